@@ -109,7 +109,9 @@ impl Command {
         let names: Vec<String> =
             given.ids().filter(|id| is_by_hand(given, id)).map(ToString::to_string).collect();
         if let Some(encoding) = command.encoding() {
-            encoding.quality_given = names.iter().any(|name| name == "quality");
+            let given = |id: &str| names.iter().any(|name| name == id);
+            (encoding.compression_given, encoding.quality_given) =
+                (given("compression"), given("quality"));
         }
         if let Self::Render(args) = &mut command {
             args.given = names;

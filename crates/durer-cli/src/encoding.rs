@@ -14,13 +14,16 @@ pub const FLATTENED: &str = "a JPEG has no transparency; the picture is composed
 /// Formats and sizes of files.
 #[derive(Debug, Clone, Args)]
 pub struct EncodingArgs {
-    /// Effort of PNG compression; the pixels do not change
+    /// Effort of compression of a PNG; the pixels do not change
     #[arg(long, value_name = "HOW", default_value = "fast")]
     pub compression: Compression,
     /// Quality of a JPEG, 1 to 100 [default: 90]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u8).range(1..=100))]
     pub quality: Option<u8>,
-    /// True if the quality is from the command line, and not from a file of options.
+    /// True if the compression is from the command line, and not from a file of options.
+    #[arg(skip)]
+    pub compression_given: bool,
+    /// The same for the quality.
     #[arg(skip)]
     pub quality_given: bool,
 }
@@ -55,9 +58,14 @@ impl From<Compression> for durer_formats::png::Compression {
 }
 
 impl EncodingArgs {
-    /// Refuses options that the format has no use for.
-    pub fn check(&self, kind: Kind) -> Result<(), Failure> {
-        if self.quality_given && kind != Kind::Picture(PictureFormat::Jpeg) {
+    /// Refuses options that no file of the command follows, given the kinds of the files.
+    pub fn check(&self, kinds: &[Kind]) -> Result<(), Failure> {
+        if self.compression_given && !kinds.contains(&Kind::PNG) {
+            let message =
+                "--compression: only a PNG has one; leave it out, or end the name in .png";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        if self.quality_given && !kinds.contains(&Kind::Picture(PictureFormat::Jpeg)) {
             let message = "--quality: only a JPEG has one, other formats keep the pixels as they are; \
                            end the name in .jpg, or give --format jpeg";
             return Err(Failure::Usage(message.to_owned()));

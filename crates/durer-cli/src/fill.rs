@@ -126,7 +126,7 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let names = [Name { input: args.image.clone(), frame: None }];
     let wanted = Wanted::picture(&args.output, args.file.format);
-    args.file.encoding.check(wanted.kind)?;
+    args.file.encoding.check(&[wanted.kind])?;
     let target = output::plan("--output", &args.output, &names, &wanted)?.into_iter().next();
     let target = target.ok_or_else(|| Failure::Usage("nothing to fill".to_owned()))?;
     if args.json && target == Target::Stdout {

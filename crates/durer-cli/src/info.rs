@@ -14,7 +14,7 @@ use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces, SceneOrientation};
 use durer::work::Work;
 use durer_formats::told::{counted, cut, escaped};
-use durer_formats::{Facts, Model, ModelFormat, Place, archive, is_name_of_model};
+use durer_formats::{Facts, Model, ModelFormat, Place, archive, is_name_of_model, xyz};
 use serde::Serialize;
 use std::fmt::Write;
 use std::fs::File;
@@ -186,10 +186,12 @@ fn maps(path: &Path) -> Option<Vec<String>> {
         return (!maps.is_empty() && !has_model).then_some(maps);
     }
     let lower = head.get(..2).unwrap_or_default().to_ascii_lowercase();
-    // Rows that begin with x are points of a model, as other columns beside them say.
+    // Rows that begin with x are points of a model, as other columns beside them say, and so are rows of numbers.
     let is_cloud = ModelFormat::of_name(&path.to_string_lossy()) == Some(ModelFormat::Xyz)
-        && lower.starts_with(b"x");
-    let is_model = ModelFormat::of_content(head).is_some() || is_cloud;
+        && (lower.starts_with(b"x") || xyz::sniff(head));
+    // Broken glTF is JSON like map data; the name tells.
+    let named = ModelFormat::of_name(&path.to_string_lossy()).filter(|f| *f != ModelFormat::Xyz);
+    let is_model = ModelFormat::of_content(head).or(named).is_some() || is_cloud;
     (!is_model && layer::format_of(path, head).is_some()).then(Vec::new)
 }
 
@@ -377,7 +379,9 @@ fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
     let _faces = work.charge("edges of the model", 150 * value)?;
     let faces = Faces::new(scene)?;
     let edges = Edges::new(&faces, |_| true);
-    Ok(edges.iter().all(|(_, sides)| sides.len() == 2))
+    let mut sides = edges.iter().map(|(_, sides)| sides.len()).peekable();
+    // Triangles without an area have no edges.
+    Ok(sides.peek().is_some() && sides.all(|sides| sides == 2))
 }
 
 fn material(material: &Material) -> MaterialInfo {

@@ -106,6 +106,11 @@ fn tell_ignored(model: &mut Model, options: &ReadOptions) {
             }
         }
     }
+    let has_own = ["glTF", "COLLADA", "FBX"].iter().any(|name| model.format.starts_with(name));
+    if options.own_lights && !has_own {
+        let message = format!("{} has no lights; --own-lights does nothing", model.format);
+        model.warn(Place::Whole, message);
+    }
     if options.plate.is_some() && model.format != "3MF" {
         let message = format!("{} has no plates; --plate does nothing", model.format);
         model.warn(Place::Whole, message);

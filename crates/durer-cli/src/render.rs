@@ -2,6 +2,7 @@
 
 mod cells;
 mod check;
+mod idle;
 mod jobs;
 mod scene_options;
 mod streamed;
@@ -47,6 +48,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let jobs = plan(args)?;
     let pictures = jobs.iter().map(|job| job.pictures.len() as u64).sum();
     let messages = Messages::new(&args.running, pictures);
+    idle::tell(args, &messages);
     let mut report = Growing::new(args.json);
     let ended = render_all(args, &jobs, &messages, &mut report);
     drop(messages);

@@ -122,7 +122,7 @@ struct Loaded {
 pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     let name = Name { input: "warped".into(), frame: None };
     let wanted = Wanted::picture(&args.output, args.file.format);
-    args.file.encoding.check(wanted.kind)?;
+    args.file.encoding.check(&[wanted.kind])?;
     let targets = output::plan("--output", &args.output, std::slice::from_ref(&name), &wanted)?;
     let Some(target) = targets.first() else { return Ok(()) };
     if args.json && *target == output::Target::Stdout {

@@ -68,7 +68,7 @@ impl PictureFormat {
 /// Options for encoding pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoding {
-    /// Effort of PNG and JPEG compression; it changes no pixel.
+    /// Effort of compression of a PNG; it changes no pixel.
     pub compression: Compression,
     /// Quality of JPEG: 1, small and coarse, to 100, large and fine. From 90 on colours are as fine as
     /// brightness.

@@ -34,7 +34,7 @@ pub enum ModelFormat {
     Las,
     /// E57.
     E57,
-    /// Points as text; detected by the name alone.
+    /// Points as text; detected by the name, or by lines of numbers if neither name nor content determine another.
     Xyz,
 }
 
@@ -235,7 +235,9 @@ fn read_unpacked(
     resources: &dyn Resources,
     options: &ReadOptions,
 ) -> Result<Model> {
-    match ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name)) {
+    let format = ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name));
+    let points = || xyz::sniff(bytes).then_some(ModelFormat::Xyz);
+    match format.or_else(points) {
         Some(ModelFormat::Gltf) => gltf::read(bytes, resources, options),
         Some(ModelFormat::Obj) => obj::read(bytes, resources, options),
         Some(ModelFormat::Stl) => stl::read(bytes, resources, options),

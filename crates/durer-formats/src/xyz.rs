@@ -5,7 +5,8 @@
 //! one number is the count of points (Leica's PTS, several times if there are several scans); other lines without
 //! numbers before the first point are comments, and give the meaning of each column if they name `x`, `y` and `z`.
 //! Otherwise columns after the third are recognized by their values: three from 0 to 255 (or to 1, and not beyond) are
-//! colours; of seven columns the fourth is the intensity. z is up.
+//! colours, but unit vectors behind the coordinates are normals, which points are shown without; of seven columns the
+//! fourth is the intensity. z is up.
 //!
 //! Cost: two passes over the text if there are more than three columns. Memory: 24 bytes per point
 //! while reading, 16 more with colours.
@@ -50,6 +51,39 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     }
     table.add_colors(&text, &mut cloud);
     cloud.into_model(model)
+}
+
+/// Number of bytes, and of lines with numbers, that tell whether a text holds points.
+const PROBE: (usize, usize) = (16 << 10, 20);
+
+/// Returns whether the first lines of a text hold points: as many numbers each, at least three. Comments, lines of one
+/// number and names of columns do not count.
+pub fn sniff(bytes: &[u8]) -> bool {
+    let head = bytes.get(..PROBE.0).unwrap_or(bytes);
+    let mut text = utf8(head).into_owned();
+    if head.len() < bytes.len() {
+        // The last line may be cut.
+        let end = text.iter().rposition(|&b| matches!(b, b'\n' | b'\r')).unwrap_or(0);
+        text.truncate(end);
+    }
+    let (mut table, mut columns) = (Table::default(), None);
+    let mut found = 0;
+    for (_, words) in lines(&text).take(PROBE.1) {
+        match numbers(words) {
+            Some((_, 0 | 1)) => {}
+            Some((_, count @ 3..)) if columns.is_none_or(|columns| columns == count) => {
+                (columns, found) = (Some(count), found + 1);
+            }
+            None if found == 0 => {
+                table.name(words);
+                if !table.named {
+                    return false;
+                }
+            }
+            _ => return false,
+        }
+    }
+    found > 0
 }
 
 /// Returns the lines that are not empty, with their numbers.
@@ -99,6 +133,8 @@ struct Table {
     least: [f64; COLUMNS],
     most: [f64; COLUMNS],
     whole: [bool; COLUMNS],
+    /// True if the three columns after the coordinates have been a unit vector in all lines.
+    unit: bool,
     /// Lines before the first point.
     head: u64,
 }
@@ -114,6 +150,7 @@ impl Default for Table {
             least: [f64::INFINITY; COLUMNS],
             most: [f64::NEG_INFINITY; COLUMNS],
             whole: [true; COLUMNS],
+            unit: true,
             head: 0,
         }
     }
@@ -134,6 +171,8 @@ impl Table {
             self.most[column] = self.most[column].max(value);
             self.whole[column] &= value.fract() == 0.0;
         }
+        let length = values[3].hypot(values[4]).hypot(values[5]);
+        self.unit &= count >= 6 && (length - 1.0).abs() < 0.01;
     }
 
     /// Reads a line before the first point that is not a comment.
@@ -180,9 +219,9 @@ impl Table {
         let most = columns.clone().map(|c| self.most[c]).fold(0.0, f64::max);
         let whole = columns.clone().all(|c| self.whole[c]);
         match (least, whole) {
+            (true, _) if most <= 1.0 => Some(1.0),
             (true, true) if most <= 255.0 => Some(255.0),
             (true, true) if most <= 65535.0 => Some(65535.0),
-            (true, false) if most <= 1.0 => Some(1.0),
             _ => None,
         }
     }
@@ -196,6 +235,8 @@ impl Table {
             0..=5 => &[],
             // x y z i r g b, as Leica's; x y z r g b with a value behind, as CloudCompare's.
             7 if self.full_scale(4).is_some() => &[4],
+            // MeshLab's x y z and a normal.
+            _ if self.unit => &[6, 7],
             _ => &[3, 4, 6, 7],
         };
         self.color = candidates.iter().copied().find(|&c| self.full_scale(c).is_some());
@@ -269,13 +310,37 @@ mod tests {
             "//X Y Z R G B\n0 0 0 255 0 0\n1 1 1 0 0 255",
             "label;x;y;z;intensity;red;green;blue\n7;0;0;0;3;255;0;0\n9;1;1;1;4;0;0;255",
             "0 0 0 65535 0 0\n1 1 1 0 0 65535",
+            "0 0 0 1 0 0\n1 1 1 1 1 0",
+            "0 0 0 0 0 1 255 0 0\n1 1 1 0 0.6 0.8 9 0 0",
         ] {
             assert_eq!(mesh(text).colors[0], red, "{text}");
             assert_eq!(mesh(text).positions[1], Vec3::ONE, "{text}");
         }
-        assert!(mesh("0 0 0 0.6 -0.8 0\n1 1 1 1 0 0").colors.is_empty());
+        for normals in ["0 0 0 0.6 -0.8 0\n1 1 1 1 0 0", "0 0 0 0 0 1\n1 1 1 0 0.6 0.8"] {
+            assert!(mesh(normals).colors.is_empty());
+        }
         let greys = mesh("0 0 0 -1204\n1 1 1 2000").colors;
         assert!(greys[0].x < 0.02 && greys[1].x == 1.0, "{greys:?}");
+    }
+
+    #[test]
+    fn lines_of_numbers_are_points() {
+        for (text, expected) in [
+            ("1 2 3\n", true),
+            ("2\n1,2,3,4\n5,6,7,8", true),
+            ("//X Y Z R G B\n0 0 0 255 0 0\n", true),
+            ("x;y;z\r\n1;2;3\r\n", true),
+            ("1 2 3\n1 2\n", false),
+            ("1 2 3\nend\n", false),
+            ("id;name;z\n1;2;3\n", false),
+            ("1 2\n3 4\n", false),
+            ("7\n", false),
+            ("", false),
+        ] {
+            assert_eq!(sniff(text.as_bytes()), expected, "{text}");
+        }
+        let cut = "1 2 3\n".repeat(PROBE.0 / 6) + "1 2 3 4";
+        assert!(sniff(&cut.as_bytes()[..cut.len() - 2]));
     }
 
     #[test]

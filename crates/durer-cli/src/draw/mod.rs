@@ -140,7 +140,7 @@ fn in_memory<T>(
 
 /// Refuses options of pixels for vectors, and the other way round.
 fn check_kind(args: &DrawArgs, kind: Kind) -> Result<(), Failure> {
-    args.picture.encoding.check(kind)?;
+    args.picture.encoding.check(&[kind])?;
     if kind.is_vector() && args.picture.aa == Smoothing::None {
         let message = "--aa: vectors have no pixels; end the name in .png, or leave the option out";
         return Err(Failure::Usage(message.to_owned()));

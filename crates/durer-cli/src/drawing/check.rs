@@ -37,7 +37,7 @@ const OF_PIXELS: &[(&str, &str)] = &[
 /// Options that are about pixels but go with painted drawings too.
 const OF_PICTURES: &[(&str, &str)] = &[
     ("size", "a vector file has millimetres; use --page, e.g. --page 200x150"),
-    ("compression", "it is for .png and .jpg files; leave it out"),
+    ("compression", "it is for .png files; leave it out"),
 ];
 
 /// Checks options that the parser cannot check.

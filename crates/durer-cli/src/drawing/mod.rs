@@ -280,7 +280,8 @@ fn with_tones(style: DrawStyle, hatch: Option<Hatch>) -> DrawStyle {
     }
 }
 
-fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
+/// Returns the hatching of areas: as requested, or as fits the file.
+pub fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
     args.drawing.hatch.unwrap_or(match kind {
         Kind::Drawing(format) if format.is_for_pens() => Hatch::Shade,
         _ => Hatch::None,

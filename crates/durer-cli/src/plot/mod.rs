@@ -121,7 +121,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
         Format::Picture(format) => Kind::Picture(format),
         Format::Drawing(format) => Kind::Drawing(format),
     };
-    args.look.encoding.check(kind)?;
+    args.look.encoding.check(&[kind])?;
     args.machine.check(kind.drawing())?;
     let target = target(args)?;
     let messages = Messages::new(&args.running, 1);

@@ -3,7 +3,7 @@
 use super::RenderArgs;
 use super::cells::shots;
 use crate::failure::Failure;
-use crate::kind::Wanted;
+use crate::kind::{Kind, Wanted};
 use crate::options::{Samples, Shadows};
 use crate::values::{Algorithm, Size};
 use crate::{camera, drawing, environment, input, section};
@@ -15,8 +15,10 @@ pub fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
     section::check(&args.section, args.drawing.sheet.is_some())?;
-    drawing::check(args, wanted(args).kind)?;
-    args.picture.encoding.check(wanted(args).kind)?;
+    let kind = wanted(args).kind;
+    drawing::check(args, kind)?;
+    let beside = if has_planes(args) { Kind::PNG } else { kind };
+    args.picture.encoding.check(&[kind, beside])?;
     if !args.picture.sides.is_open() {
         check_tile(args)?;
     }

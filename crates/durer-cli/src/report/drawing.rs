@@ -99,6 +99,8 @@ impl DrawingReport {
         features: Vec<FeatureReport>,
     ) -> Self {
         let regions = || drawings.iter().flat_map(|d| &d.regions);
+        // Views of a sheet show the same model, and sections other edges of it.
+        let edges = drawings.iter().map(|d| d.edges).max_by_key(|e| e.edges).unwrap_or_default();
         let lines = |class: LineClass, visible: bool| {
             let all = drawings.iter().flat_map(|d| &d.lines);
             of(all.filter(|l| l.class == class && l.is_visible() == visible))
@@ -116,8 +118,8 @@ impl DrawingReport {
             regions: regions().count(),
             // The sum of no numbers is −0.
             region_area: regions().map(|r| r.area()).sum::<f64>() + 0.0,
-            edges: drawings.iter().map(|d| d.edges.edges).sum(),
-            border_edges: drawings.iter().map(|d| d.edges.borders).sum(),
+            edges: edges.edges,
+            border_edges: edges.borders,
             lines: LineClass::ALL.iter().filter_map(class).collect(),
             features,
             told_scale: None,

@@ -251,7 +251,7 @@ mod tests {
         assert_eq!((mesh.positions.len(), model.scene.up_axis), (2, UpAxis::Z));
         assert!(at(&model, 1).distance(DVec3::new(100.0, 3.0, 1.0)) < 1e-6, "{}", at(&model, 1));
         assert_eq!(mesh.colors, [Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::new(0.0, 0.0, 1.0, 1.0)]);
-        assert_eq!(model.warnings[0].to_string(), "1 points are marked as invalid and left out");
+        assert_eq!(model.warnings[0].to_string(), "1 point is marked as invalid and left out");
     }
 
     #[test]

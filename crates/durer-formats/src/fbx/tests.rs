@@ -377,14 +377,14 @@ fn what_is_left_out_is_told() {
     let model = read(&file(SETTINGS, &node(2, "Mesh", hidden), &[(2, 0, ""), (1, 2, "")]));
     assert_eq!(
         warnings(&model)[0],
-        "node2: 1 nodes are hidden; they and the nodes below them are left out"
+        "node2: 1 node is hidden; it and the nodes below it are left out"
     );
     assert!(warnings(&model)[1].contains("no nodes with a mesh"));
     let curve = "AnimationCurve: 40, \"AnimCurve::\", \"\" { KeyVer: 4008 }\nDeformer: 41, \"Deformer::\", \"Skin\" { Version: 101 }\n";
     let objects = node(2, "Mesh", "") + curve;
     let model = read(&file(SETTINGS, &objects, &[(2, 0, ""), (1, 2, ""), (41, 1, "")]));
-    assert!(warnings(&model)[0].starts_with("1 skins are not bent"), "{:?}", warnings(&model));
-    assert!(warnings(&model)[1].starts_with("1 curves of animations"), "{:?}", warnings(&model));
+    assert!(warnings(&model)[0].starts_with("1 skin is not bent"), "{:?}", warnings(&model));
+    assert!(warnings(&model)[1].starts_with("1 curve of an animation"), "{:?}", warnings(&model));
     let text = file(
         SETTINGS,
         &node(2, "Mesh", &vectors(&[("Lcl Scaling", [f64::INFINITY, 1.0, 1.0])])),
@@ -392,7 +392,7 @@ fn what_is_left_out_is_told() {
     );
     let model = read(&text.replace("inf,", "1e999,"));
     assert!(
-        warnings(&model)[0].contains("1 transforms have numbers that are not finite"),
+        warnings(&model)[0].contains("1 transform has numbers that are not finite"),
         "{:?}",
         warnings(&model)
     );
@@ -400,7 +400,7 @@ fn what_is_left_out_is_told() {
     let model = read(&beyond.replace("0,1,0,0,1,1,0 }", "0,1,0,0,1,9,0 }"));
     assert!(
         warnings(&model)[0]
-            .starts_with("shape: 1 corners refer to a missing normal, color or texture coordinate"),
+            .starts_with("shape: 1 corner refers to a missing normal, color or texture coordinate"),
         "{:?}",
         warnings(&model)
     );

@@ -2,6 +2,7 @@
 
 use super::Operation;
 use super::function::{Function, function, unknown};
+use crate::told::counted;
 use crate::{Error, Result};
 
 /// Deeper nesting of parentheses, signs and powers is refused; parsing recurses so deep.
@@ -233,10 +234,9 @@ impl<'a> Parser<'a> {
             Function::Fold(_) => (count.max(2), None),
         };
         if count != needed {
-            let message = format!("`{name}` takes {needed} arguments, not {count}");
-            return Err(
-                self.error_at(start, message.replace("takes 1 arguments", "takes 1 argument"))
-            );
+            let arguments = counted(needed as u64, "argument", "arguments");
+            let message = format!("`{name}` takes {arguments}, not {count}");
+            return Err(self.error_at(start, message));
         }
         self.operations.extend(operation);
         Ok(())

@@ -50,7 +50,7 @@ pub fn split<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Contai
         Container { json: file.whole()?, bin: None, binary: false }
     };
     if container.json.starts_with(BYTE_ORDER_MARK) {
-        let message = "the JSON begins with a byte order mark; passed over".to_owned();
+        let message = "the JSON begins with a byte order mark, which is ignored".to_owned();
         warnings.push(Warning { place: Place::Whole, message });
     }
     Ok(container)

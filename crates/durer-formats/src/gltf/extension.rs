@@ -31,8 +31,30 @@ const IN_PART: &[(&str, &str)] = &[
     ("KHR_materials_volume", "its colour tints the surface, its thickness does nothing"),
 ];
 
-/// Extensions whose absence is reported elsewhere, or changes no picture.
-const SILENT: &[&str] = &["KHR_texture_basisu", "KHR_xmp", "KHR_xmp_json_ld"];
+/// Extensions whose absence is reported elsewhere, or changes no picture: metadata, physics, what avatars can do, and
+/// coarser levels of detail.
+const SILENT: &[&str] = &[
+    "AGI_articulations",
+    "CESIUM_RTC",
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_structural_metadata",
+    "FB_geometry_metadata",
+    "KHR_interactivity",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_texture_basisu",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "MSFT_lod",
+    "VRMC_node_constraint",
+    "VRMC_springBone",
+    "VRMC_vrm",
+];
+
+/// Beginnings of the names of further ones.
+const SILENT_KINDS: &[&str] = &["KHR_audio_", "KHR_collision_", "KHR_physics_", "OMI_"];
 
 /// Describes the effect of an ignored optional extension, for a message.
 fn loss(name: &str) -> &'static str {
@@ -41,8 +63,12 @@ fn loss(name: &str) -> &'static str {
             "textures without a PNG, JPEG or WebP are drawn white"
         }
         "KHR_animation_pointer" => "animated parts stay at rest",
-        n if n.starts_with("KHR_materials_") => "drawn without its effect",
-        _ => "passed over",
+        "KHR_gaussian_splatting" => "splats are drawn as points",
+        "CESIUM_primitive_outline" => "outlines are not drawn; --edges draws edges",
+        "EXT_lights_image_based" | "EXT_lights_ies" => "its lights do not shine",
+        "VRM" | "VRMC_materials_mtoon" => "toon materials are drawn as ordinary ones",
+        n if n.contains("_materials_") => "drawn without its effect",
+        _ => "drawn without what it adds",
     }
 }
 
@@ -52,7 +78,10 @@ fn loss(name: &str) -> &'static str {
 /// [`Error::Unsupported`] naming the required extensions.
 pub fn check(root: &Root, model: &mut Model) -> Result<()> {
     let known = |name: &str| {
-        READ.contains(&name) || SILENT.contains(&name) || IN_PART.iter().any(|(n, _)| *n == name)
+        READ.contains(&name)
+            || SILENT.contains(&name)
+            || SILENT_KINDS.iter().any(|kind| name.starts_with(kind))
+            || IN_PART.iter().any(|(n, _)| *n == name)
     };
     let required = &root.extensions_required;
     let missing: Vec<&str> = required.iter().map(String::as_str).filter(|n| !known(n)).collect();

@@ -137,6 +137,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
         warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
     });
     tell_missing_scene(&root, &nodes, &mut model);
+    tell_other_scenes(&root, &nodes, &mut model);
     let visible = tree.visible(&root);
     let mut builder = Builder {
         source: &source,
@@ -171,6 +172,20 @@ fn tell_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
         let message = format!("there is no scene {scene} among {scenes}; {shown}");
         model.warn(Place::Path("scene".into()), message);
     }
+}
+
+/// Warns of scenes with objects that the scene that is shown does not have.
+fn tell_other_scenes(root: &Root, shown: &[usize], model: &mut Model) {
+    let mut lost = vec![false; root.nodes.len()];
+    for (lost, node) in lost.iter_mut().zip(&root.nodes) {
+        *lost = node.mesh.is_some() || !node.children.is_empty();
+    }
+    for &node in shown {
+        lost[node] = false;
+    }
+    let others = root.scenes.iter().filter(|scene| scene.nodes.iter().any(|n| lost[n.index()]));
+    let words = "further {scene has objects that are|scenes have objects that are} not shown";
+    model.warn_counted(Place::Path("scenes".into()), others.count() as u64, words);
 }
 
 /// Checks the version: only version 2 is read, and of it 2.0.

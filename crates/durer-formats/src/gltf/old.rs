@@ -6,7 +6,12 @@ use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 /// Returns the error for a version that is not read.
 pub fn unsupported(place: Place, version: &str) -> Error {
-    let hint = "export the model as glTF 2.0, or convert it, for example by `gltf-pipeline`";
+    let hint = match version.split('.').next() {
+        Some("0" | "1") => {
+            "export the model as glTF 2.0, or convert it, for example by `gltf-pipeline`"
+        }
+        _ => "export the model as glTF 2.0",
+    };
     Error::Unsupported { place, what: format!("glTF {version}"), hint: hint.to_owned() }
 }
 

@@ -2,6 +2,7 @@
 //! its `values`, `heights`, `elevation` or `data`; null is a missing height.
 
 use super::{Grid, HeightMapOptions, check_size};
+use crate::told::counted;
 use crate::{Error, Limits, Place, Result, foreign};
 use serde_json::Value;
 
@@ -71,7 +72,8 @@ fn nested(rows: &[Value], name: &str, limits: &Limits) -> Result<(usize, usize, 
     for (r, row) in rows.iter().enumerate() {
         let row = array(row, &format!("{name}[{r}]"))?;
         if row.len() != columns {
-            let message = format!("{} numbers; the first row has {columns}", row.len());
+            let numbers = counted(row.len() as u64, "number", "numbers");
+            let message = format!("{numbers}; the first row has {columns}");
             return Err(wrong(&format!("{name}[{r}]"), &message));
         }
         for (c, value) in row.iter().enumerate() {
@@ -98,7 +100,8 @@ fn flat(
         (size(["width", "columns", "ncols"])?, size(["height", "rows", "nrows"])?);
     let count = check_size(columns, rows, limits)?;
     if values.len() != count {
-        let message = format!("{} numbers; {columns} × {rows} are needed", values.len());
+        let numbers = counted(values.len() as u64, "number", "numbers");
+        let message = format!("{numbers}; {columns} × {rows} are needed");
         return Err(wrong(name, &message));
     }
     let heights = values.iter().enumerate();

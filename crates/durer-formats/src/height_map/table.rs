@@ -2,6 +2,7 @@
 
 use super::{Grid, HeightMapOptions, check_size, points};
 use crate::text::{quote, utf8};
+use crate::told::counted;
 use crate::{Error, Place, Result, Warning, number};
 
 /// Returns whether text begins with a number or the names of coordinates, after comments.
@@ -168,7 +169,8 @@ fn row(grid: &mut Grid, line: &[u8], number: u64, separator: Option<u8>) -> Resu
     if grid.rows == 0 {
         grid.columns = count;
     } else if count != grid.columns {
-        let message = format!("{count} numbers; the rows before have {}", grid.columns);
+        let numbers = counted(count as u64, "number", "numbers");
+        let message = format!("{numbers}; the rows before have {}", grid.columns);
         return Err(Error::line(number, 0, message));
     }
     grid.rows += 1;

@@ -7,10 +7,21 @@ use super::corners::{Corner, Corners, NONE};
 use super::count::{Counts, is_off};
 use super::repairs::{Repairs, note};
 use crate::text::{self, Cursor, quote};
+use crate::told::counted;
 use crate::{Error, Limits, Place, Result};
 use durer::math::{DVec3, Vec2, Vec3};
 use element::Part;
 use std::collections::HashMap;
+
+/// Statements of free-form curves and surfaces.
+const FREE_FORM: &[&[u8]] = &[
+    b"vp", b"cstype", b"deg", b"bmat", b"step", b"curv", b"curv2", b"surf", b"parm", b"trim",
+    b"hole", b"scrv", b"sp", b"end", b"con", b"mg",
+];
+
+/// Statements about how a renderer should show faces, which change no shape and no material.
+const IDLE: &[&[u8]] =
+    &[b"lod", b"bevel", b"c_interp", b"d_interp", b"shadow_obj", b"trace_obj", b"stech", b"ctech"];
 
 /// Primitives from `start` on have this material and these names, until the next run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -171,6 +182,11 @@ impl<'a> Parser<'a> {
             b"o" => self.object = self.cursor.rest(),
             b"g" => self.group = self.cursor.rest(),
             b"s" => self.smoothing_group(),
+            _ if IDLE.contains(&word) => {}
+            _ if FREE_FORM.contains(&word) => {
+                let place = self.cursor.place();
+                self.out.repairs.free_form.add(|| place);
+            }
             _ => {
                 let place = self.cursor.place();
                 if self.out.repairs.unknown.count == 0 {
@@ -211,7 +227,8 @@ impl<'a> Parser<'a> {
         let mut values = [0.0; N];
         let count = self.cursor.floats(&mut values)?;
         if count < least {
-            let message = format!("`{what}` has {count} numbers; it needs {least}");
+            let numbers = counted(count as u64, "number", "numbers");
+            let message = format!("`{what}` has {numbers}; it needs {least}");
             return Err(Error::line(line, 0, message));
         }
         Ok((values, count))

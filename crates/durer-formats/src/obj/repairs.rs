@@ -9,6 +9,7 @@ use crate::{Error, Model, Place, Result};
 pub(super) struct Repairs {
     pub unknown: Tally,
     pub unknown_word: String,
+    pub free_form: Tally,
     pub short_faces: Tally,
     pub non_finite: Tally,
     pub sloppy: Tally,
@@ -55,6 +56,10 @@ impl Repairs {
             }
         }
         for (tally, words) in [
+            (
+                &self.free_form,
+                "{statement of a free-form curve or surface is|statements of free-form curves and surfaces are} not read",
+            ),
             (
                 &self.short_faces,
                 "{element has too few corners and was|elements have too few corners and were} left out",

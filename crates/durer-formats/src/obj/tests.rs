@@ -44,7 +44,7 @@ fn polygons_are_filled_to_their_outline() {
     }
     let bow = read("v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1 4/1").unwrap();
     assert_eq!((area(mesh(&bow)), mesh(&bow).positions.len()), (2.0, 5));
-    assert_eq!(words(&bow), ["face 1: 1 polygons cross themselves; filled by the non-zero rule"]);
+    assert_eq!(words(&bow), ["face 1: 1 polygon crosses itself; filled by the non-zero rule"]);
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn what_is_wrong_with_an_element_costs_that_element() {
     assert!(words[0].ends_with(
         "the first: vertex 99 does not exist: there are 8, counted from 1, or back from -1"
     ));
-    assert!(words[1].starts_with("line 18: 1 elements have too few corners"));
+    assert!(words[1].starts_with("line 18: 1 element has too few corners"));
     let error = read("v 0 0 0\nv 1 0 0\nf 1 2 3\nf 1 2 4").unwrap_err().to_string();
     assert!(error.starts_with("line 3, column 7: vertex 3 does not exist"), "{error}");
 }
@@ -121,7 +121,7 @@ fn a_vertex_without_numbers_keeps_its_number() {
     );
     let words = words(&model);
     assert!(
-        words[0].contains("1 vertices, texture coordinates or normals are not readable"),
+        words[0].contains("1 vertex, texture coordinate or normal is not readable"),
         "{words:?}"
     );
     assert!(words[0].contains("line 2, column 7: ") && words[0].contains("`oops` is not a number"));

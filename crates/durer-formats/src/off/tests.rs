@@ -51,7 +51,7 @@ fn colors_of_vertices_and_faces() {
     let mesh = &model.scene.meshes[0];
     let color = |t: usize| mesh.triangle(t).map(|v| mesh.colors[v as usize]);
     assert_eq!((color(0), color(1), color(2)), ([RED; 3], [BLUE; 3], [Vec4::ONE; 3]));
-    assert!(warnings(&model).contains("1 faces have a color by number"), "{}", warnings(&model));
+    assert!(warnings(&model).contains("1 face has a color by number"), "{}", warnings(&model));
 }
 
 #[test]
@@ -69,10 +69,7 @@ fn lines_points_and_what_is_wrong() {
     let model = read_ok(&format!("OFF\n4 5 0\n{SQUARE}2 0 1\n3 1 2 3\n1 1\n3 0 1 9\n0\n"));
     assert_eq!(model.scene.meshes[1].indices.as_deref(), Some(&[0, 1][..]));
     let text = warnings(&model);
-    assert!(
-        text.contains("1 faces have a vertex") && text.contains("2 faces have fewer"),
-        "{text}"
-    );
+    assert!(text.contains("1 face has a vertex") && text.contains("2 faces have fewer"), "{text}");
     let model = read_ok(&format!("OFF\n4 0 0\n{SQUARE}"));
     assert_eq!(model.scene.meshes[0].topology, Topology::Points);
     for (text, expected) in [

@@ -2,7 +2,7 @@
 
 use super::header::{Element, Type};
 use crate::text::Cursor;
-use crate::told::agreeing;
+use crate::told::{agreeing, counted};
 use crate::{Error, Place, Result};
 
 /// A source of values.
@@ -45,7 +45,9 @@ pub(super) trait Values {
             return Ok(());
         }
         self.end();
-        let message = format!("a list of {length} values, but only {left} bytes are left");
+        let values = counted(length, "value", "values");
+        let bytes = counted(left, "byte is", "bytes are");
+        let message = format!("a list of {values}, but only {bytes} left");
         Err(Error::Decode { place: self.place(), message })
     }
 

@@ -171,7 +171,7 @@ fn crossing_outlines_are_filled_by_the_non_zero_rule_with_interpolated_attribute
     assert_eq!(normals.iter().map(|n| n.length()).sum::<f64>(), 2.0);
     assert_eq!(
         model.warnings[0].to_string(),
-        "face 1: 1 polygons cross themselves; filled by the non-zero rule"
+        "face 1: 1 polygon crosses itself; filled by the non-zero rule"
     );
     // A star of five corners: parts wound around twice are inside too.
     let star: Vec<[f64; 2]> = (0..5)

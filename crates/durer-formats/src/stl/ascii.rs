@@ -154,7 +154,8 @@ impl<'a> Ascii<'a> {
             count = self.with_commas(text, cursor, &mut values)?;
         }
         if count < 3 {
-            let message = format!("`vertex` has {count} numbers; it needs 3");
+            let numbers = counted(count as u64, "number", "numbers");
+            let message = format!("`vertex` has {numbers}; it needs 3");
             return Err(Error::line(cursor.line(), 0, message));
         }
         self.open += 1;

@@ -120,7 +120,7 @@ fn corners_have_attributes_by_offset_and_stride() {
     assert_eq!(mesh.colors[1], Vec4::new(0.0, 1.0, 0.0, 0.5));
     let material = &model.scene.materials[mesh.parts[0].material.expect("of colours")];
     assert_eq!(material.name, "vertex colors");
-    assert!(warnings(&model)[0].contains("1 instances refer to missing objects"));
+    assert!(warnings(&model)[0].contains("1 instance refers to a missing object"));
 }
 
 #[test]
@@ -290,7 +290,7 @@ fn textures_by_surface_instance_and_name() {
         warnings(&model)
     );
     let model = read(&shaded(&textured("none"), ""));
-    assert!(warnings(&model)[0].contains("1 textures name no picture"), "{:?}", warnings(&model));
+    assert!(warnings(&model)[0].contains("1 texture names no picture"), "{:?}", warnings(&model));
 }
 
 #[test]
@@ -321,15 +321,12 @@ fn skins_are_shown_as_they_were_bound() {
 fn what_is_wrong_is_left_out_with_a_word() {
     for (primitives, expected) in [
         ("<triangles>V<p>0 1 2 0 2 9</p></triangles>", "line 1, column"),
-        ("<triangles>V<p>0 1 2 0 2 9</p></triangles>", "1 corners have an index beyond"),
-        ("<triangles>V<p>0 1 2 0 2</p></triangles>", "1 faces or lists have too few"),
-        (
-            "<polylist>V<vcount>3 4</vcount><p>0 1 2 3</p></polylist>",
-            "1 faces or lists have too few",
-        ),
+        ("<triangles>V<p>0 1 2 0 2 9</p></triangles>", "1 corner has an index beyond"),
+        ("<triangles>V<p>0 1 2 0 2</p></triangles>", "1 face or list has too few"),
+        ("<polylist>V<vcount>3 4</vcount><p>0 1 2 3</p></polylist>", "1 face or list has too few"),
         (
             "<triangles>V<input semantic=\"NORMAL\" source=\"#zz\" offset=\"0\"/><p>0 1 2</p></triangles>",
-            "1 inputs name a source",
+            "1 input names a source",
         ),
         (
             "<triangles>V<input semantic=\"NORMAL\" source=\"#n\" offset=\"0\"/><p>0 1 2</p></triangles>",
@@ -345,8 +342,7 @@ fn what_is_wrong_is_left_out_with_a_word() {
         "",
         "<instance_geometry url=\"#q\"/><instance_light url=\"#x\"/><scale>1</scale>",
     ));
-    for expected in
-        ["2 instances refer to missing", "1 transforms have not", "no nodes with a mesh"]
+    for expected in ["2 instances refer to missing", "1 transform does not", "no nodes with a mesh"]
     {
         assert!(
             warnings(&empty).iter().any(|w| w.contains(expected)),

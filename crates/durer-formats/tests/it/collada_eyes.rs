@@ -158,5 +158,5 @@ fn lights_that_show_nothing_are_left_out() {
     let unknown = lamp("area", "", "");
     assert_eq!(unknown.scene.lights, []);
     let told = unknown.warnings[0].to_string();
-    assert!(told.contains("1 lights are of no known kind"), "{told}");
+    assert!(told.contains("1 light is of no known kind"), "{told}");
 }

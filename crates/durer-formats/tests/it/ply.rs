@@ -227,7 +227,7 @@ fn a_missing_picture_and_missing_coordinates_are_told() {
     assert!(warnings(&none).contains("no texture coordinates"), "{}", warnings(&none));
     let odd =
         textured(&cube(&format!("comment TextureFile quad.png\n{coords}"), "3 0 1 2 4 0 0 1 0\n"));
-    assert!(warnings(&odd).contains("1 faces have different numbers"), "{}", warnings(&odd));
+    assert!(warnings(&odd).contains("1 face has different numbers"), "{}", warnings(&odd));
 }
 
 #[test]
@@ -243,7 +243,7 @@ fn several_pictures_by_their_numbers() {
         model.scene.meshes[0].parts.iter().map(|p| (p.range.clone(), p.material)).collect();
     assert_eq!(parts, [(0..2, Some(1)), (2..4, Some(0)), (4..6, None)]);
     assert_eq!(model.scene.materials[1].name, "other one.png");
-    assert!(warnings(&model).contains("1 faces name a picture"), "{}", warnings(&model));
+    assert!(warnings(&model).contains("1 face names a picture"), "{}", warnings(&model));
     assert_eq!(model.warnings.len(), 1, "{}", warnings(&model));
 }
 
@@ -282,7 +282,7 @@ fn splats_are_discs_of_their_first_colour() {
     let model = read_with(&bytes, &NoResources).expect("readable");
     let text = warnings(&model);
     assert!(
-        text.contains("1 splats of an opacity") && text.contains("1 splats have no finite"),
+        text.contains("1 splat of an opacity") && text.contains("1 splat has no finite"),
         "{text}"
     );
     let mesh = &model.scene.meshes[0];
@@ -350,7 +350,7 @@ fn lines_of_a_header_that_are_no_words_of_it_are_skipped() {
     let model = read(&text);
     assert_eq!(model.scene.meshes[0].positions.len(), 8);
     assert!(
-        warnings(&model).contains("line 7: 1 lines are not of a PLY header"),
+        warnings(&model).contains("line 7: 1 line is not of a PLY header"),
         "{}",
         warnings(&model)
     );

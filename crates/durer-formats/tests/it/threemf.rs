@@ -111,7 +111,7 @@ fn half_transparent_triangles_are_blended() {
     let texts: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
     let [colors, properties] = &texts[..] else { panic!("{texts:?}") };
     assert!(colors.contains("part.model, byte") && colors.contains("1 colors are not"), "{colors}");
-    assert!(properties.contains("1 triangles refer to properties"), "{properties}");
+    assert!(properties.contains("1 triangle refers to properties"), "{properties}");
 }
 
 /// Returns a PNG of 2 × 2 pixels.
@@ -226,7 +226,7 @@ fn triangles_of_missing_vertices_are_left_out() {
     let model = read(&simple("meter", &resources, r#"<item objectid="1"/>"#)).expect("readable");
     assert_eq!(model.scene.meshes[0].indices, Some(vec![0, 0, 0, 0, 1, 3]));
     let text = model.warnings[0].to_string();
-    assert!(text.starts_with("3D/part.model, object 1: 1 triangles refer to vertices"), "{text}");
+    assert!(text.starts_with("3D/part.model, object 1: 1 triangle refers to vertices"), "{text}");
 }
 
 /// Checks a project on plates whose second part is a hole.
@@ -301,7 +301,7 @@ fn volumes_of_prusaslicer() {
     let [red, blue] = [Vec3::X, Vec3::Z].map(|c| c.extend(1.0));
     assert_eq!(colors(&model), [blue, red, blue]);
     assert!(
-        model.warnings[0].message.starts_with("1 triangles are modifiers"),
+        model.warnings[0].message.starts_with("1 triangle is a modifier"),
         "{:?}",
         model.warnings
     );
@@ -327,7 +327,7 @@ fn beams_are_shown() {
     assert!((bounds.min - DVec3::splat(-0.5)).abs().max_element() < 1e-6, "{bounds:?}");
     assert!((bounds.max - DVec3::new(1.5, 1.25, 0.5)).abs().max_element() < 1e-6, "{bounds:?}");
     let [warning] = &model.warnings[..] else { panic!("{:?}", model.warnings) };
-    assert!(warning.message.starts_with("1 beams or balls refer to vertices"), "{warning}");
+    assert!(warning.message.starts_with("1 beam or ball refers to vertices"), "{warning}");
     let limits = Limits { primitives: 447, ..Limits::default() };
     let bytes = simple("millimeter", &resources, r#"<item objectid="1"/>"#);
     let options = ReadOptions { limits, ..ReadOptions::default() };
@@ -358,8 +358,8 @@ fn what_is_not_read_is_told() {
     let items = r#"<item objectid="1"/><item objectid="2"/>"#;
     let model = read(&simple("meter", &resources, items)).expect("readable");
     let texts: Vec<_> = model.warnings.iter().map(ToString::to_string).collect();
-    assert!(texts[0].contains("object 1: 1 items are objects of the type `other`"), "{texts:?}");
-    assert!(texts[1].contains("object 2: 1 objects have neither triangles nor beams"), "{texts:?}");
+    assert!(texts[0].contains("object 1: 1 item is an object of the type `other`"), "{texts:?}");
+    assert!(texts[1].contains("object 2: 1 object has neither triangles nor beams"), "{texts:?}");
     assert!(texts[2].contains("no items with triangles or beams"), "{texts:?}");
 }
 

@@ -377,3 +377,87 @@ fn words_of_other_libraries_do_not_appear() {
         }
     }
 }
+
+/// Returns whether a message counts one thing by a plural, such as `1 faces`.
+fn is_wrongly_plural(message: &str) -> bool {
+    let words: Vec<&str> = message.split(|c: char| c.is_whitespace() || c == '(').collect();
+    words.windows(2).any(|pair| {
+        let verb = ["is", "was", "has", "does"].contains(&pair[1]);
+        pair[0] == "1" && pair[1].ends_with('s') && !verb
+    })
+}
+
+#[test]
+fn one_thing_is_no_plural() {
+    const FACE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let obj = |rest: &str| ("a.obj", format!("{FACE}{rest}").into_bytes());
+    let ply = |vertices: &str, elements: &str, rows: &str| {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             {elements}end_header\n{vertices}{rows}"
+        );
+        ("a.ply", text.into_bytes())
+    };
+    let faces =
+        |count: u32| format!("element face {count}\nproperty list uchar int vertex_indices\n");
+    let points = "0 0 0\n1 0 0\n0 1 0\n";
+    let stl = |rest: &str| {
+        let facet = "facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\n";
+        ("a.stl", format!("solid a\n{facet}{rest}").into_bytes())
+    };
+    let off =
+        |faces: &str| ("a.off", format!("OFF\n3 2 0\n{points}3 0 1 2\n{faces}\n").into_bytes());
+    let mut binary = vec![0; 84 + 50];
+    binary[80] = 1;
+    let longer = [&binary[..], b"x"].concat();
+    binary[80] = 2;
+    let none = [&b"v"[..], &binary[1..84]].concat();
+    for ((name, bytes), expected) in [
+        (obj("foo 1\n"), "1 statement is not known and was skipped: `foo`"),
+        (obj("curv 0 1 1 2\n"), "1 statement of a free-form curve or surface is not read"),
+        (obj("f 1 2 9\n"), "1 face, line or point has a wrong corner and was left out: vertex 9"),
+        (obj("v 1\n"), "is not readable: `v` has 1 number; it needs 3"),
+        (obj("f 1 2\n"), "1 element has too few corners and was left out"),
+        (obj("v 0 0 inf\n"), "1 vertex has a coordinate"),
+        (obj("v 0 0 0x\n"), "1 number has something behind it, which was ignored"),
+        (obj("f 1/1 2 3\n"), "1 corner names texture coordinates or normals"),
+        (obj("v 1 1 1 1 0 0\nv 0 0 2\n"), "vertex"),
+        (obj("vn 0 0 1\nf 1//1 3//1 2\n"), "1 vertex has no normal where others have one"),
+        (("a.obj", b"v 0 0 0\n".to_vec()), "the 1 vertex is taken as a point"),
+        (stl("foo\nendsolid\n"), "1 word is not STL and was skipped"),
+        (stl("facet\nvertex 0 0 0\nendfacet\nendsolid\n"), "1 facet has fewer than three"),
+        (
+            stl("facet\nvertex 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n"),
+            "its facet was",
+        ),
+        (
+            stl("facet\nvertex 0 0 0,5\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n"),
+            "1 number has",
+        ),
+        (stl(""), "1 whole triangle was read"),
+        (("a.stl", longer), "1 byte after the last triangle was ignored"),
+        (("a.stl", binary), "the header counts 2 triangles, the file has room for 1"),
+        (("a.stl", none), "the file has room for 0"),
+        (
+            ply(points, &faces(2), "3 0 1 2\n2 0 1\n"),
+            "1 face has fewer than three vertices and was",
+        ),
+        (ply(points, &faces(2), "3 0 1 2\n3 0 1 9\n"), "1 face or edge like this is left out"),
+        (ply(points, &format!("{}foo\n", faces(1)), "3 0 1 2\n"), "1 line is not of a PLY header"),
+        (ply("0 0 0\n1 0 0\n0 1 nan\n", &faces(1), "3 0 1 2\n"), "1 vertex has a coordinate"),
+        (ply(points, &faces(2), "3 0 1 2\n"), "1 of 2 rows of element `face` is read"),
+        (ply(points, "element foo 1\nproperty int a\n", "7\n"), "its 1 row is left out"),
+        (off("3 0 1 9"), "1 face has a vertex that does not exist and was left out"),
+        (off("1 0"), "1 face has fewer than two vertices and was left out"),
+        (off("3 0 1 2 7"), "1 face has a color by number"),
+        (("a.xyz", b"0 0 0\nend\n".to_vec()), "1 line holds no point and was skipped"),
+        (("a.xyz", b"0 0 0\n0 0 inf\n".to_vec()), "1 point has a coordinate"),
+    ] {
+        let said = said_of_model(name, &bytes);
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(said.iter().any(|message| message.contains(expected)), "{text}: {said:?}");
+        for message in said {
+            assert!(!is_wrongly_plural(&message), "{message}");
+        }
+    }
+}

@@ -86,7 +86,7 @@ fn phong_has_colors_highlights_and_opacity() {
     let none =
         shaded(&(color("TransparentColor", 1.0) + &number("TransparencyFactor", 1.0)), &[], "");
     assert_eq!(none.scene.materials[0].base_color.w, 1.0);
-    assert!(warnings(&none)[0].starts_with("m8: 1 materials are wholly transparent"));
+    assert!(warnings(&none)[0].starts_with("m8: 1 material is wholly transparent"));
 }
 
 #[test]

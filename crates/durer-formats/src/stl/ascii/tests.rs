@@ -88,7 +88,7 @@ fn facets_of_more_corners_are_polygons() {
     assert_eq!((mesh.triangle_count(), &mesh.faces[..]), (4, &[0, 1, 3][..]));
     assert_eq!(
         warnings(&model),
-        ["line 18, column 1: 1 facets have fewer than three vertices and were left out"]
+        ["line 18, column 1: 1 facet has fewer than three vertices and was left out"]
     );
     let area: f32 = (1..3)
         .map(|t| mesh.triangle(t).map(|v| mesh.positions[v as usize]))
@@ -107,7 +107,7 @@ fn commas_between_numbers_and_in_them() {
     assert!(between.warnings.is_empty());
     let decimal = file("vertex 1,5 2,25 -3,0e1 vertex 2 0 0");
     assert_eq!(decimal.scene.meshes[0].positions[0], Vec3::new(1.5, 2.25, -30.0));
-    assert!(warnings(&decimal)[0].contains("3 numbers have a decimal comma"));
+    assert!(warnings(&decimal)[0].contains("3 numbers have decimal commas"));
 }
 
 #[test]

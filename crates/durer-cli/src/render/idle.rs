@@ -1,0 +1,112 @@
+//! Options of the command line that have no effect together with others.
+
+use super::check::{algorithm, wanted};
+use crate::drawing;
+use crate::kind::Kind;
+use crate::messages::Messages;
+use crate::options::drawing::Hatch;
+use crate::options::{Shading, Shadows};
+use crate::render_args::RenderArgs;
+use crate::values::Algorithm;
+use durer::pipeline::{DrawStyle, SurfaceMethod};
+use durer_formats::drawing::DrawingFormat;
+
+/// A reason, and the options that have no effect for it.
+type Rule = (&'static str, &'static [&'static str]);
+
+/// Warns of options that were given without any effect.
+pub fn tell(args: &RenderArgs, messages: &Messages) {
+    let kind = wanted(args).kind;
+    let rules = if drawing::is_wanted(args, kind) {
+        [of_lines(args, kind), of_style(args), of_file(args, kind)]
+    } else {
+        [of_algorithm(args), of_samples(args), of_shading(args)]
+    };
+    for (reason, idle) in rules.into_iter().flatten() {
+        for id in args.given.iter().filter(|id| idle.contains(&&***id)) {
+            let option = id.replace('_', "-");
+            messages.warning(&format!("--{option}"), format!("it has no effect: {reason}"));
+        }
+    }
+}
+
+/// Returns options for areas, where a drawing has lines only.
+fn of_lines(args: &RenderArgs, kind: Kind) -> Option<Rule> {
+    let lines =
+        matches!(args.drawing.style, None | Some(DrawStyle::HiddenLine | DrawStyle::Wireframe));
+    // The caps of sections are areas.
+    let has_areas = drawing::hatch(args, kind) != Hatch::None || !args.section.section.is_empty();
+    (lines && !has_areas).then_some((
+        "the drawing consists of lines; --style regions has areas",
+        &["light", "exposure", "own_lights", "cull", "merge", "fill"],
+    ))
+}
+
+/// Returns options for lines that a style does not have.
+fn of_style(args: &RenderArgs) -> Option<Rule> {
+    match args.drawing.style? {
+        DrawStyle::Wireframe => Some(("a wireframe shows all lines alike", &["hidden", "beneath"])),
+        DrawStyle::Regions => Some((
+            "the style regions has no lines; regions+lines has",
+            &["hidden", "beneath", "lines", "stubs"],
+        )),
+        _ => None,
+    }
+}
+
+/// Returns options that a format of drawings has no place for.
+fn of_file(args: &RenderArgs, kind: Kind) -> Option<Rule> {
+    let sheet = args.drawing.sheet.is_some();
+    Some(match kind.drawing()? {
+        DrawingFormat::GeoJson => (
+            "a .geojson has the units of the model, and no paper",
+            &["page", "margin", "scale", "unit", "pen", "background", "title"],
+        ),
+        DrawingFormat::Dxf | DrawingFormat::Hpgl if !sheet => {
+            ("the file has no place for it", &["background", "title"])
+        }
+        DrawingFormat::Dxf | DrawingFormat::Hpgl | DrawingFormat::Gcode => {
+            ("the file has no place for it", &["background"])
+        }
+        _ => return None,
+    })
+}
+
+/// Returns options for surfaces, where a picture shows edges only.
+fn of_algorithm(args: &RenderArgs) -> Option<Rule> {
+    (algorithm(args) == Algorithm::Wireframe).then_some((
+        "the algorithm wireframe draws edges, not surfaces",
+        &[
+            "aa",
+            "shading",
+            "light",
+            "own_lights",
+            "cull",
+            "shadows",
+            "exposure",
+            "environment",
+            "tone_map",
+        ],
+    ))
+}
+
+/// Returns `--aa` for algorithms with a fixed number of samples.
+fn of_samples(args: &RenderArgs) -> Option<Rule> {
+    use SurfaceMethod::{DepthSort, ScanLineZ, SpanningScanLine};
+    let single =
+        matches!(algorithm(args), Algorithm::Surfaces(ScanLineZ | SpanningScanLine | DepthSort));
+    single.then_some(("this algorithm has one sample per pixel", &["aa"]))
+}
+
+/// Returns options for light, where surfaces have none.
+fn of_shading(args: &RenderArgs) -> Option<Rule> {
+    let shading = args.look.shading;
+    if matches!(shading, Some(Shading::Unlit)) {
+        return Some((
+            "--shading unlit shows colours without light",
+            &["light", "own_lights", "shadows", "exposure", "environment"],
+        ));
+    }
+    matches!(args.look.shadows, Shadows::Rays)
+        .then_some(("rays to the lights need no map", &["shadow_map"]))
+}
