@@ -113,8 +113,10 @@ impl Command {
             (encoding.compression_given, encoding.quality_given) =
                 (given("compression"), given("quality"));
         }
-        if let Self::Render(args) = &mut command {
-            args.given = names;
+        match &mut command {
+            Self::Render(args) => args.given = names,
+            Self::Plot(args) => args.given = names,
+            _ => {}
         }
         if let Some(running) = command.running() {
             running.work = watch::work(running);

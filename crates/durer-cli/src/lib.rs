@@ -25,6 +25,7 @@ mod film;
 #[doc(hidden)]
 pub mod fuzzing;
 mod given;
+mod idle;
 mod info;
 mod input;
 mod kind;

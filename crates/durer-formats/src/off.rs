@@ -12,6 +12,7 @@ use crate::last_digit::last_digit;
 use crate::model::count_infinite;
 use crate::obj::corners::NONE;
 use crate::text::{Cursor, Tally, quote, utf8};
+use crate::told::there_are;
 use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result, place};
 use durer::math::{DVec3, Vec2, Vec4};
 use durer::scene::{Instance, Mesh, Topology};
@@ -303,7 +304,8 @@ impl Reader {
         let nothing = self.facets.triangles.indices.is_empty() && self.lines.is_empty();
         if nothing && self.dangling.count > 0 {
             let (place, count) = (self.dangling.first, self.points.len());
-            let message = format!("this vertex does not exist: there are {count}, counted from 0");
+            let there = there_are(count as u64);
+            let message = format!("this vertex does not exist: {there}, counted from 0");
             return Err(Error::Decode { place, message });
         }
         self.warn(&mut model);

@@ -56,6 +56,11 @@ pub fn agreeing(count: u64, words: &str) -> String {
     told + rest
 }
 
+/// Returns how many things there are, e.g. `there is 1` or `there are 2`.
+pub(crate) fn there_are(count: u64) -> String {
+    format!("there {} {count}", if count == 1 { "is" } else { "are" })
+}
+
 fn cut_at(text: &str, most: usize) -> Cow<'_, str> {
     let mut ends = text.char_indices().map(|(at, _)| at).skip(most - 1);
     match (ends.next(), ends.next()) {

@@ -57,6 +57,9 @@ pub struct PlotArgs {
     /// Threads and messages.
     #[command(flatten)]
     pub running: RunningArgs,
+    /// The options that were given, by their names in the parser.
+    #[arg(skip)]
+    pub given: Vec<String>,
     /// Write a report on standard output, in JSON
     #[arg(long, help_heading = "Running")]
     pub json: bool,
@@ -168,13 +171,13 @@ pub struct PlotLookArgs {
     #[arg(long)]
     pub no_axes: bool,
     /// Names of the axes, joined by commas [default: x,y,z]
-    #[arg(long, value_name = "X,Y,Z", value_parser = super::names)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = names)]
     pub labels: Option<[String; 3]>,
     /// A title above the plot
     #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
     pub title: String,
     /// The paper: A0 … A6, letter, … (lying), or WIDTHxHEIGHT in millimetres
-    #[arg(long, value_name = "PAGE", default_value = "180x135", value_parser = super::page)]
+    #[arg(long, value_name = "PAGE", default_value = "180x135", value_parser = page)]
     pub page: Page,
     /// Encoding of pictures.
     #[command(flatten)]
@@ -208,4 +211,18 @@ pub enum Hidden {
 
 fn color_map(text: &str) -> Result<ColorMap, String> {
     text.parse().map_err(|e: durer::Error| e.to_string())
+}
+
+/// Returns three names joined by commas; they may be empty.
+fn names(text: &str) -> Result<[String; 3], String> {
+    let names: Vec<String> = text.split(',').map(|n| n.trim().to_owned()).collect();
+    names.try_into().map_err(|_| "three names joined by commas are needed, e.g. x,y,z".to_owned())
+}
+
+/// Returns a page; `fit` has no meaning for a plot, which fits the page.
+fn page(text: &str) -> Result<Page, String> {
+    match text.parse() {
+        Ok(Page::Fit) => Err("a plot fits its page; name a size such as A4 or 180x135".to_owned()),
+        other => other.map_err(|e: durer::Error| e.to_string()),
+    }
 }

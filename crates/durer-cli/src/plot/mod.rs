@@ -1,6 +1,7 @@
 //! `durer plot`.
 
 mod args;
+mod idle;
 mod report;
 
 pub use args::{EXAMPLES, PlotArgs};
@@ -15,7 +16,7 @@ use crate::report as reports;
 use crate::values::{self, Size};
 use args::{Hidden, Lines};
 use durer::math::{DVec2, DVec3};
-use durer::paper::{self, Page};
+use durer::paper;
 use durer::plot::{self, Axes, Plot};
 use durer::scene::{HeightField, UpAxis};
 use durer::shade::color::encode_rgba8;
@@ -99,20 +100,6 @@ pub fn aspect(text: &str) -> Result<Ratio, String> {
     }
 }
 
-/// Returns three names joined by commas; they may be empty.
-pub fn names(text: &str) -> Result<[String; 3], String> {
-    let names: Vec<String> = text.split(',').map(|n| n.trim().to_owned()).collect();
-    names.try_into().map_err(|_| "three names joined by commas are needed, e.g. x,y,z".to_owned())
-}
-
-/// Returns a page; `fit` has no meaning for a plot, which fits the page.
-pub fn page(text: &str) -> Result<Page, String> {
-    match text.parse() {
-        Ok(Page::Fit) => Err("a plot fits its page; name a size such as A4 or 180x135".to_owned()),
-        other => other.map_err(|e: durer::Error| e.to_string()),
-    }
-}
-
 /// Makes the plot.
 pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let start = Instant::now();
@@ -122,9 +109,14 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
         Format::Drawing(format) => Kind::Drawing(format),
     };
     args.look.encoding.check(&[kind])?;
+    if kind.is_vector() && args.given.iter().any(|id| id == "size") {
+        let message = "--size: a vector file has millimetres; use --page, e.g. --page 200x150";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     args.machine.check(kind.drawing())?;
     let target = target(args)?;
     let messages = Messages::new(&args.running, 1);
+    idle::tell(args, kind, &messages);
     messages.progress.stage(|| "reading".to_owned());
     let surface = Surface::read(args, &messages)?;
     let read_seconds = start.elapsed().as_secs_f64();

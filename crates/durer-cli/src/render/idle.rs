@@ -2,6 +2,7 @@
 
 use super::check::{algorithm, wanted};
 use crate::drawing;
+use crate::idle::{self, Rule};
 use crate::kind::Kind;
 use crate::messages::Messages;
 use crate::options::drawing::Hatch;
@@ -11,9 +12,6 @@ use crate::values::Algorithm;
 use durer::pipeline::{DrawStyle, SurfaceMethod};
 use durer_formats::drawing::DrawingFormat;
 
-/// A reason, and the options that have no effect for it.
-type Rule = (&'static str, &'static [&'static str]);
-
 /// Warns of options that were given without any effect.
 pub fn tell(args: &RenderArgs, messages: &Messages) {
     let kind = wanted(args).kind;
@@ -22,12 +20,7 @@ pub fn tell(args: &RenderArgs, messages: &Messages) {
     } else {
         [of_algorithm(args), of_samples(args), of_shading(args)]
     };
-    for (reason, idle) in rules.into_iter().flatten() {
-        for id in args.given.iter().filter(|id| idle.contains(&&***id)) {
-            let option = id.replace('_', "-");
-            messages.warning(&format!("--{option}"), format!("it has no effect: {reason}"));
-        }
-    }
+    idle::tell(&args.given, rules.into_iter().flatten(), messages);
 }
 
 /// Returns options for areas, where a drawing has lines only.

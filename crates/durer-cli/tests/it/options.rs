@@ -128,3 +128,40 @@ fn completions_and_the_manual_know_all_options() {
         assert!(manual.contains(part), "{part} is missing");
     }
 }
+
+#[test]
+fn options_without_effect_are_told() {
+    let folder = Folder::with_models();
+    for (options, told) in [
+        ("a.svg --light ambient:red", "--light: it has no effect: the drawing consists of lines"),
+        ("a.svg --style wireframe --exposure 1", "--exposure: it has no effect: the drawing"),
+        ("a.svg --style wireframe --hidden dashed", "--hidden: it has no effect: a wireframe"),
+        ("a.svg --style regions --lines all", "--lines: it has no effect: the style regions"),
+        ("a.geojson --page A3", "--page: it has no effect: a .geojson"),
+        ("a.dxf --title T --unit mm", "--title: it has no effect: the file has no place for it"),
+        ("a.gcode --background red --scale 1:1", "--background: it has no effect: the file"),
+        (
+            "a.png --algorithm wireframe --shading flat",
+            "--shading: it has no effect: the algorithm",
+        ),
+        ("a.png --algorithm depth-sort --aa 16", "--aa: it has no effect: this algorithm has one"),
+        ("a.png --shading unlit --shadows map", "--shadows: it has no effect: --shading unlit"),
+        ("a.png --shadows rays --shadow-map 64", "--shadow-map: it has no effect: rays"),
+        ("a.png --own-lights", "cube.obj: OBJ has no lights; --own-lights does nothing"),
+    ] {
+        let size = if options.starts_with("a.png") { " --size 8x8" } else { "" };
+        let ended = folder.must(&format!("render cube.obj -o {options}{size}"));
+        assert!(ended.err.contains(&format!("durer: warning: {told}")), "{options}: {}", ended.err);
+    }
+    for options in [
+        "a.svg --light ambient:red --style regions",
+        "a.svg --light ambient:red --hatch shade",
+        "a.svg --light ambient:red --section 1,0,0,0",
+        "a.dxf --title T --unit mm --sheet third-angle",
+        "a.svg --hidden dashed",
+        "a.png --size 8x8 --aa 16 --light ambient:red --shading flat --shadows map --shadow-map 8",
+    ] {
+        let ended = folder.must(&format!("render cube.obj -o {options}"));
+        assert!(!ended.err.contains("no effect"), "{options}: {}", ended.err);
+    }
+}

@@ -79,6 +79,14 @@ fn quality_and_compression_are_for_what_has_them() {
     assert_eq!(size("--quality 90"), size(""));
     folder.run("render cube.obj -o a.png --quality 50").fails(2, "--quality: only a JPEG");
     folder.run("render cube.obj -o a.svg --quality 50").fails(2, "--quality: only a JPEG");
+    let only = "--compression: only a PNG";
+    for output in ["a.jpg", "a.webp", "a.gif --turntable 2", "a.jpg --style hidden-line"] {
+        folder.run(&format!("render cube.obj -o {output} --compression small")).fails(2, only);
+    }
+    folder.run("render cube.obj -o a.svg --compression small").fails(2, "it is for .png files");
+    folder.run("plot --formula x -o a.svg --compression small").fails(2, only);
+    folder.must("render cube.obj -o a.jpg --depth d.png --size 8x8 --compression small");
+    folder.must("render cube.obj -o turn.png --turntable 2 --size 8x8 --compression small");
     folder.run("render cube.obj -o a.jpg --quality 0").fails(2, "--quality");
     folder.run("render cube.obj -o a.jpg --quality 101").fails(2, "--quality");
     folder.run("render cube.obj -o a.jpg --size 65536x1").fails(2, "room for 65535 pixels");

@@ -38,7 +38,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("render bracket.stl --style shadows --hatch shade", "shadows.pdf"),
     ("render bracket.stl --style regions+lines", "drawn.png"),
     ("render teapot.obj --quality 80", "a.jpg"),
-    ("render crate.glb --compression small", "b.jpg"),
+    ("render crate.glb --compression small", "small.png"),
     ("render glass.glb --background transparent", "a.webp"),
     ("render bracket.stl --turntable 3", "turn.png"),
     ("render glass.glb --turntable 3 --background transparent", "turn.webp"),

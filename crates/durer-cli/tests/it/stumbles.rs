@@ -1,5 +1,6 @@
 //! Mistakes of newcomers: each message tells what is right.
 
+use crate::clip::piped;
 use crate::harness::{Ended, Folder, Picture};
 use std::io::Write;
 use std::process::Stdio;
@@ -155,4 +156,51 @@ fn models_are_seen_at_any_place_and_in_any_size() {
         assert_eq!(ended.err, "", "{at} {side}");
         assert!(Picture::decode(&folder.read("a.png")).shows_something(), "{at} {side}");
     }
+}
+
+#[test]
+fn what_bounds_nothing_is_not_closed() {
+    let folder = Folder::with_models();
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 3 2 1\n");
+    folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("line.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+    for (name, closed) in [
+        ("flat.obj", false.into()),
+        ("triangle.obj", false.into()),
+        ("cube.obj", true.into()),
+        ("line.obj", serde_json::Value::Null),
+    ] {
+        let info = folder.must(&format!("info {name} --json")).json();
+        assert_eq!(info["closed"], closed, "{name}");
+    }
+}
+
+#[test]
+fn views_of_a_sheet_have_the_borders_of_one_model() {
+    let folder = Folder::new();
+    folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let ended = folder.must("render triangle.obj -o o.svg --sheet third-angle --json");
+    assert!(ended.err.is_empty(), "{}", ended.err);
+    let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];
+    assert_eq!((&drawing["edges"], &drawing["border_edges"]), (&3.into(), &3.into()));
+}
+
+#[test]
+fn lines_of_numbers_are_points_under_any_name() {
+    let folder = Folder::new();
+    let points = "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n";
+    for name in ["points", "points.dat", "points.csv", "points.xyz"] {
+        folder.write(name, points);
+        let info = folder.must(&format!("info {name} --json")).json();
+        assert_eq!((&info["points"], &info["format"]), (&3.into(), &"point cloud, text".into()));
+    }
+    let info = piped(&folder, "info - --json", points.as_bytes()).json();
+    assert_eq!(info["points"], 3);
+    let drawn = piped(&folder, "render - -o - --size 16x16", points.as_bytes());
+    let red = Picture::decode(&drawn.out).pixels().filter(|p| p[0] > 200 && p[1] < 60).count();
+    assert!(red >= 9, "{red}");
+    folder.write("words", "1 2 3\nwords\n");
+    folder.run("info words").fails(1, "not a known format");
+    folder.write("a.gltf", r#"{"scene": 0}"#);
+    folder.run("info a.gltf").fails(1, "`asset` is missing");
 }

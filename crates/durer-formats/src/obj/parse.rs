@@ -7,7 +7,7 @@ use super::corners::{Corner, Corners, NONE};
 use super::count::{Counts, is_off};
 use super::repairs::{Repairs, note};
 use crate::text::{self, Cursor, quote};
-use crate::told::counted;
+use crate::told::{counted, there_are};
 use crate::{Error, Limits, Place, Result};
 use durer::math::{DVec3, Vec2, Vec3};
 use element::Part;
@@ -339,9 +339,12 @@ impl<'a> Parser<'a> {
             Kind::TexCoord => "texture coordinate",
             Kind::Normal => "normal",
         };
-        let there = if index < 0 { format!("{so_far} so far") } else { format!("{total}") };
+        let there = match index {
+            0.. => there_are(total as u64),
+            _ => there_are(so_far as u64) + " so far",
+        };
         Err(self.cursor.error(format!(
-            "{what} {index} does not exist: there are {there}, counted from 1, or back from -1"
+            "{what} {index} does not exist: {there}, counted from 1, or back from -1"
         )))
     }
 }

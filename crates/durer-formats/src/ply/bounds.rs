@@ -4,6 +4,7 @@ use super::body::Values;
 use super::header::{Header, Type};
 use super::names::Plan;
 use crate::text::Tally;
+use crate::told::there_are;
 use crate::{Error, Limits, Result};
 
 /// Limits of vertex numbers and counts.
@@ -39,7 +40,8 @@ impl Bounds {
     /// Returns the message about the first number that names no vertex.
     pub fn dangling_message(&self) -> String {
         let (value, count) = (self.dangling_vertex, self.vertex_count);
-        let message = format!("vertex {value} does not exist: there are {count}, counted from 0");
+        let there = there_are(count);
+        let message = format!("vertex {value} does not exist: {there}, counted from 0");
         let swapped = u64::from((value as u32).swap_bytes()) < count;
         if swapped && (65536.0..=f64::from(u32::MAX)).contains(&value) {
             return message + "; it would if the header named the other byte order";

@@ -137,13 +137,27 @@ fn a_default_scene_that_is_missing_gives_way_to_what_there_is() {
 }
 
 #[test]
+fn other_scenes_are_told() {
+    let told = |scenes: &str| {
+        let members = r#""nodes": [{"mesh": 0, "children": [1]}, {"mesh": 0}, {"mesh": 0}, {"name": "camera"}]"#;
+        let model = read(&triangle(&format!(r#""scenes": [{scenes}], {members}"#))).unwrap();
+        model.warnings.iter().map(ToString::to_string).collect::<String>()
+    };
+    let one = "scenes: 1 further scene has objects that are not shown";
+    assert_eq!(told(r#"{"nodes": [0]}, {"nodes": [2]}"#), one);
+    let two = "scenes: 2 further scenes have objects that are not shown";
+    assert_eq!(told(r#"{"nodes": [0]}, {"nodes": [0, 2]}, {"nodes": [2]}"#), two);
+    assert_eq!(told(r#"{"nodes": [0, 2]}, {"nodes": [2]}, {"nodes": [3]}, {}"#), "");
+}
+
+#[test]
 fn trees_must_be_trees() {
     let nodes = |nodes: &str| error(&triangle(&format!(r#""nodes": [{nodes}]"#)));
     assert!(nodes(r#"{"children": [1]}, {"children": [0]}"#).starts_with("nodes[0]: "));
     assert!(nodes(r#"{"children": [0]}"#).contains("its own ancestor"));
     assert!(nodes(r#"{"children": [2]}, {"children": [2]}, {}"#).contains("two parents"));
     assert!(nodes(r#"{"children": [1, 1]}, {}"#).contains("two parents"));
-    assert!(nodes(r#"{"children": [7]}"#).contains("no node 7: there are 1"));
+    assert!(nodes(r#"{"children": [7]}"#).contains("no node 7: there is 1"));
 }
 
 #[test]
