@@ -50,6 +50,7 @@ mod text;
 pub mod threemf;
 pub mod tiles;
 pub mod told;
+mod unread;
 mod uri;
 mod xml;
 pub mod xyz;

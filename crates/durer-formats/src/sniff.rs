@@ -5,7 +5,7 @@ use crate::geo::GeoFormat;
 use crate::text::{Cursor, utf8};
 use crate::{
     Error, Model, Place, ReadOptions, Resources, Result, collada, e57, fbx, gltf, gzip, image, las,
-    obj, off, ply, stl, threemf, xyz,
+    obj, off, ply, stl, threemf, unread, xyz,
 };
 
 /// Number of bytes of a file that are examined.
@@ -198,7 +198,11 @@ pub fn read_model(
     options: &ReadOptions,
 ) -> Result<Model> {
     let bytes = &*gzip::unpacked(bytes, &options.limits)?;
-    if !bytes.starts_with(archive::MAGIC) || is_3mf(bytes) {
+    let packed = bytes.starts_with(archive::MAGIC);
+    if let (true, Some(unread)) = (packed, unread::of_name(name)) {
+        return Err(unread);
+    }
+    if !packed || is_3mf(bytes) {
         return read_unpacked(bytes, name, resources, options);
     }
     let Member { name, bytes, beside, .. } = archive::only(
@@ -235,9 +239,12 @@ fn read_unpacked(
     resources: &dyn Resources,
     options: &ReadOptions,
 ) -> Result<Model> {
-    let format = ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name));
+    let content = ModelFormat::of_content(bytes);
+    if let (None, Some(unread)) = (content, unread::of_content(bytes)) {
+        return Err(unread);
+    }
     let points = || xyz::sniff(bytes).then_some(ModelFormat::Xyz);
-    match format.or_else(points) {
+    match content.or_else(|| ModelFormat::of_name(name)).or_else(points) {
         Some(ModelFormat::Gltf) => gltf::read(bytes, resources, options),
         Some(ModelFormat::Obj) => obj::read(bytes, resources, options),
         Some(ModelFormat::Stl) => stl::read(bytes, resources, options),
@@ -249,7 +256,8 @@ fn read_unpacked(
         Some(ModelFormat::Las) => las::read(bytes, resources, options),
         Some(ModelFormat::E57) => e57::read(bytes, resources, options),
         Some(ModelFormat::Xyz) => xyz::read(bytes, resources, options),
-        None => Err(Error::Unknown(unknown(bytes))),
+        None if bytes.is_empty() => Err(Error::Unknown(unknown(bytes))),
+        None => Err(unread::of_name(name).unwrap_or_else(|| Error::Unknown(unknown(bytes)))),
     }
 }
 
@@ -271,8 +279,16 @@ fn unknown(bytes: &[u8]) -> String {
 
 /// Returns the format of drawings or map data that the bytes are in without doubt.
 fn flat(bytes: &[u8]) -> Option<GeoFormat> {
-    use GeoFormat::{Csv, Wkb, WkbHex};
-    GeoFormat::of_content(bytes).filter(|format| !matches!(format, Csv | Wkb | WkbHex))
+    use GeoFormat::{Csv, GeoJson, Svg, Wkb, WkbHex};
+    let head = bytes.get(..PROBE).unwrap_or(bytes);
+    let has = |part: &[u8]| head.windows(part.len()).any(|window| window == part);
+    GeoFormat::of_content(bytes).filter(|format| match format {
+        Csv | Wkb | WkbHex => false,
+        // Any XML is taken for SVG, and any JSON for GeoJSON.
+        Svg => has(b"<svg") || has(b":svg"),
+        GeoJson => has(b"\"Feature") || has(b"\"coordinates\"") || has(b"\"geometries\""),
+        _ => true,
+    })
 }
 
 #[cfg(test)]

@@ -125,7 +125,9 @@ fn broken_height_maps_are_told_with_their_place() {
 #[test]
 fn options_without_effect_are_told() {
     let folder = Folder::new();
-    folder.run("plot --formula x -o a.svg --size 80x60").fails(2, "--size: a vector file has millimetres");
+    folder
+        .run("plot --formula x -o a.svg --size 80x60")
+        .fails(2, "--size: a vector file has millimetres");
     for (options, told) in [
         ("a.svg --no-axes --labels a,b,c", "--labels: it has no effect: the plot has no axes"),
         ("a.svg --no-color-bar", "--no-color-bar: it has no effect: there is no --color-map"),
