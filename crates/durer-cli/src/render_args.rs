@@ -38,7 +38,7 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs {
     /// Models: glTF, GLB, OBJ, STL, PLY, 3MF, COLLADA, OFF, FBX where the build has it, and points in LAS, LAZ,
-    /// E57, XYZ, PTS; `-` reads one from standard input
+    /// E57, XYZ, PTS, or lines of numbers; `-` reads one from standard input
     #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
     /// File to write the picture to
