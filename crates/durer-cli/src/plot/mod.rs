@@ -16,7 +16,7 @@ use crate::report as reports;
 use crate::values::{self, Size};
 use args::{Hidden, Lines};
 use durer::math::{DVec2, DVec3};
-use durer::paper;
+use durer::paper::{self, Page};
 use durer::plot::{self, Axes, Plot};
 use durer::scene::{HeightField, UpAxis};
 use durer::shade::color::encode_rgba8;

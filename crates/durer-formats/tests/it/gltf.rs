@@ -327,9 +327,9 @@ fn broken_primitives_tell_their_path() {
 fn what_has_a_corner_that_is_no_vertex_is_left_out() {
     for (mode, indices, kept, word) in [
         (4, vec![0, 1, 3, 0, 2, 1, 9, 9, 9], vec![0, 2, 1], "2 triangles"),
-        (5, vec![0, 1, 2, 7], vec![0, 1, 2], "1 triangle "),
-        (1, vec![8, 0, 1, 2], vec![1, 2], "1 line "),
-        (0, vec![2, 65535, 0], vec![2, 0], "1 point "),
+        (5, vec![0, 1, 2, 7], vec![0, 1, 2], "1 triangle"),
+        (1, vec![8, 0, 1, 2], vec![1, 2], "1 line"),
+        (0, vec![2, 65535, 0], vec![2, 0], "1 point"),
     ] {
         let mut data = triangle_bytes();
         data.extend(indices.iter().flat_map(|i: &u16| i.to_le_bytes()));
@@ -346,9 +346,11 @@ fn what_has_a_corner_that_is_no_vertex_is_left_out() {
         let model = model.unwrap();
         assert_eq!(model.scene.meshes[0].indices.as_ref(), Some(&kept), "mode {mode}");
         let first = indices.iter().position(|i| *i > 2).unwrap();
-        let why = format!("is left out: index {first} is vertex {} of 3", indices[first]);
+        let left_out =
+            if word.starts_with('1') { "is left out" } else { "are left out, the first" };
+        let why = format!("index {first} is vertex {} of 3", indices[first]);
         let told = model.warnings.last().unwrap().to_string();
-        let all = format!("{word} with a corner that is not a vertex are left out, {why}");
+        let all = format!("{word} with a corner that is not a vertex {left_out}: {why}");
         assert_eq!(told, format!("meshes[0].primitives[0]: {all}"));
     }
 }

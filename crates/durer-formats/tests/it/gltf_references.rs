@@ -32,7 +32,7 @@ fn without_a_buffer_the_rest_is_shown() {
     let model = read(&two_buffers(&[FAR, NEAR, FAR].join(","), "")).unwrap();
     assert_eq!(model.scene.triangle_count(), 1);
     let why = "this source has no folder to look in";
-    let left_out = "meshes[0].primitives[0] and 1 more primitives are left out";
+    let left_out = "meshes[0].primitives[0] and 1 more primitive are left out";
     assert_eq!(told(&model), [format!("buffers[1].uri: cannot read `far.bin`: {why}; {left_out}")]);
     let nothing = read(&two_buffers(FAR, "")).unwrap_err().to_string();
     assert_eq!(nothing, format!("buffers[1].uri: cannot read `far.bin`: {why}"));
@@ -65,7 +65,7 @@ fn a_broken_primitive_leaves_the_others() {
     let model = read(&two_buffers(&[NEAR, BROKEN, BROKEN].join(","), "")).unwrap();
     assert_eq!(model.scene.triangle_count(), 1);
     let why = "meshes[0].primitives[1].indices: index 2 is vertex 3 of 3";
-    let left_out = "meshes[0].primitives[1] and 1 more primitives are left out";
+    let left_out = "meshes[0].primitives[1] and 1 more primitive are left out";
     assert_eq!(told(&model)[0], format!("{why}; {left_out}"));
     let both = read(&two_buffers(&[FAR, BROKEN].join(","), "")).unwrap_err().to_string();
     assert!(both.starts_with("buffers[1].uri: "), "the first error: {both}");

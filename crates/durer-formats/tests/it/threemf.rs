@@ -110,7 +110,7 @@ fn half_transparent_triangles_are_blended() {
     assert_eq!(model.scene.meshes[1].colors, [grey; 6]);
     let texts: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
     let [colors, properties] = &texts[..] else { panic!("{texts:?}") };
-    assert!(colors.contains("part.model, byte") && colors.contains("1 colors are not"), "{colors}");
+    assert!(colors.contains("part.model, byte") && colors.contains("1 color is not"), "{colors}");
     assert!(properties.contains("1 triangle refers to properties"), "{properties}");
 }
 

@@ -407,6 +407,7 @@ fn one_thing_is_no_plural() {
     };
     let off =
         |faces: &str| ("a.off", format!("OFF\n3 2 0\n{points}3 0 1 2\n{faces}\n").into_bytes());
+    let no_normal = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 3//1 2\n";
     let mut binary = vec![0; 84 + 50];
     binary[80] = 1;
     let longer = [&binary[..], b"x"].concat();
@@ -421,8 +422,8 @@ fn one_thing_is_no_plural() {
         (obj("v 0 0 inf\n"), "1 vertex has a coordinate"),
         (obj("v 0 0 0x\n"), "1 number has something behind it, which was ignored"),
         (obj("f 1/1 2 3\n"), "1 corner names texture coordinates or normals"),
-        (obj("v 1 1 1 1 0 0\nv 0 0 2\n"), "vertex"),
-        (obj("vn 0 0 1\nf 1//1 3//1 2\n"), "1 vertex has no normal where others have one"),
+        (obj("v 1 1 1 1 0 0\nv 0 0 2\n"), "1 vertex has no color where"),
+        (("a.obj", no_normal.into()), "1 vertex has no normal where others have one"),
         (("a.obj", b"v 0 0 0\n".to_vec()), "the 1 vertex is taken as a point"),
         (stl("foo\nendsolid\n"), "1 word is not STL and was skipped"),
         (stl("facet\nvertex 0 0 0\nendfacet\nendsolid\n"), "1 facet has fewer than three"),
