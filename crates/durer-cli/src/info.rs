@@ -341,15 +341,18 @@ fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
     }
     let meshes = scene.meshes.iter().zip(shown);
     let solid = meshes.filter(|(mesh, shown)| mesh.triangle_count() > 0 && *shown);
-    let (mut each, mut count) = (true, 0_usize);
+    let (mut each, mut count, mut area) = (true, 0_usize, 0.0);
     for (mesh, _) in solid {
         let (triangles, vertices) = (mesh.triangle_count() as u64, mesh.positions.len() as u64);
         let _edges = work.charge("edges of the model", 36 * triangles + 16 * vertices)?;
-        each &= written_topology(mesh, scene.last_digit).closed;
+        let found = written_topology(mesh, scene.last_digit);
+        each &= found.closed;
+        area += found.area;
         count += 1;
     }
-    if count == 0 || each {
-        return Ok((count > 0).then_some(each));
+    if count == 0 || each || area == 0.0 {
+        // Without an area, they bound nothing.
+        return Ok((count > 0).then_some(area > 0.0));
     }
     closed_together(scene, work).map(Some)
 }
@@ -379,9 +382,7 @@ fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
     let _faces = work.charge("edges of the model", 150 * value)?;
     let faces = Faces::new(scene)?;
     let edges = Edges::new(&faces, |_| true);
-    let mut sides = edges.iter().map(|(_, sides)| sides.len()).peekable();
-    // Triangles without an area have no edges.
-    Ok(sides.peek().is_some() && sides.all(|sides| sides == 2))
+    Ok(edges.iter().all(|(_, sides)| sides.len() == 2))
 }
 
 fn material(material: &Material) -> MaterialInfo {

@@ -280,8 +280,7 @@ fn with_tones(style: DrawStyle, hatch: Option<Hatch>) -> DrawStyle {
     }
 }
 
-/// Returns the hatching of areas: as requested, or as fits the file.
-pub fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
+fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
     args.drawing.hatch.unwrap_or(match kind {
         Kind::Drawing(format) if format.is_for_pens() => Hatch::Shade,
         _ => Hatch::None,

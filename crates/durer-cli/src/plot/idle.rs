@@ -13,6 +13,7 @@ pub fn tell(args: &PlotArgs, kind: Kind, messages: &Messages) {
         look.no_axes.then_some(("the plot has no axes", &["labels"][..])),
         look.color_map.is_none().then_some(("there is no --color-map", &["no_color_bar"])),
         (look.lines == Lines::None).then_some(("the plot has no lines", &["every", "hidden"])),
+        kind.is_vector().then_some(("a vector file has millimetres; use --page", &["size"])),
         of_file(kind),
     ];
     idle::tell(&args.given, rules.into_iter().flatten(), messages);

@@ -109,10 +109,6 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
         Format::Drawing(format) => Kind::Drawing(format),
     };
     args.look.encoding.check(&[kind])?;
-    if kind.is_vector() && args.given.iter().any(|id| id == "size") {
-        let message = "--size: a vector file has millimetres; use --page, e.g. --page 200x150";
-        return Err(Failure::Usage(message.to_owned()));
-    }
     args.machine.check(kind.drawing())?;
     let target = target(args)?;
     let messages = Messages::new(&args.running, 1);

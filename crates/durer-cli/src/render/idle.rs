@@ -16,7 +16,7 @@ use durer_formats::drawing::DrawingFormat;
 pub fn tell(args: &RenderArgs, messages: &Messages) {
     let kind = wanted(args).kind;
     let rules = if drawing::is_wanted(args, kind) {
-        [of_lines(args, kind), of_style(args), of_file(args, kind)]
+        [of_lines(args), of_style(args), of_file(args, kind)]
     } else {
         [of_algorithm(args), of_samples(args), of_shading(args)]
     };
@@ -24,11 +24,12 @@ pub fn tell(args: &RenderArgs, messages: &Messages) {
 }
 
 /// Returns options for areas, where a drawing has lines only.
-fn of_lines(args: &RenderArgs, kind: Kind) -> Option<Rule> {
+fn of_lines(args: &RenderArgs) -> Option<Rule> {
     let lines =
         matches!(args.drawing.style, None | Some(DrawStyle::HiddenLine | DrawStyle::Wireframe));
     // The caps of sections are areas.
-    let has_areas = drawing::hatch(args, kind) != Hatch::None || !args.section.section.is_empty();
+    let hatched = args.drawing.hatch.is_some_and(|hatch| hatch != Hatch::None);
+    let has_areas = hatched || !args.section.section.is_empty();
     (lines && !has_areas).then_some((
         "the drawing consists of lines; --style regions has areas",
         &["light", "exposure", "own_lights", "cull", "merge", "fill"],

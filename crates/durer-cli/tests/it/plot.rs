@@ -125,13 +125,11 @@ fn broken_height_maps_are_told_with_their_place() {
 #[test]
 fn options_without_effect_are_told() {
     let folder = Folder::new();
-    folder
-        .run("plot --formula x -o a.svg --size 80x60")
-        .fails(2, "--size: a vector file has millimetres");
     for (options, told) in [
         ("a.svg --no-axes --labels a,b,c", "--labels: it has no effect: the plot has no axes"),
         ("a.svg --no-color-bar", "--no-color-bar: it has no effect: there is no --color-map"),
         ("a.svg --lines none --fill --every 2", "--every: it has no effect: the plot has no lines"),
+        ("a.svg --size 80x60", "--size: it has no effect: a vector file has millimetres"),
         ("a.hpgl --ink red", "--ink: it has no effect: the file has no place for it"),
         ("a.dxf --background red", "--background: it has no effect: the file has no place"),
         ("a.png --size 40x30 --pen-order", "--pen-order: it has no effect: it is for plotters"),

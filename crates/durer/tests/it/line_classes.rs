@@ -206,3 +206,14 @@ fn steps_are_outlines_whichever_side_is_the_front() {
     assert!((length(&drawing, LineClass::Silhouette) - 2.0).abs() < 1e-6, "{:?}", drawing.lines);
     assert_eq!(length(&drawing, LineClass::Crease), 0.0);
 }
+
+#[test]
+fn a_set_has_the_classes_that_it_was_made_of() {
+    for &one in LineClass::ALL {
+        let (only, without) = (ClassSet::of(&[one]), ClassSet::of(LineClass::ALL).without(one));
+        for &other in LineClass::ALL {
+            assert_eq!(only.contains(other), one == other, "{one:?} {other:?}");
+            assert_eq!(without.contains(other), one != other, "{one:?} {other:?}");
+        }
+    }
+}

@@ -9,7 +9,7 @@ use crate::visibility::object::{Bodies, Edges, Faces, Side};
 
 /// A set of classes of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ClassSet(u16);
+pub struct ClassSet(u32);
 
 impl ClassSet {
     /// None.
@@ -22,17 +22,17 @@ impl ClassSet {
 
     /// Returns the set with one more.
     pub const fn with(self, class: LineClass) -> Self {
-        Self(self.0 | 1 << class as u16)
+        Self(self.0 | 1 << class as u32)
     }
 
     /// Returns the set with one less.
     pub const fn without(self, class: LineClass) -> Self {
-        Self(self.0 & !(1 << class as u16))
+        Self(self.0 & !(1 << class as u32))
     }
 
     /// Returns whether a class is in the set.
     pub const fn contains(self, class: LineClass) -> bool {
-        self.0 >> (class as u16) & 1 == 1
+        self.0 >> (class as u32) & 1 == 1
     }
 }
 
