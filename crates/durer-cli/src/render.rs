@@ -106,8 +106,8 @@ fn orient(
     let found = SceneOrientation::of(scene).map_err(failed)?;
     found.apply(scene);
     let (bodies, faces) = (found.inside_out, found.flipped);
-    let bodies = counted(bodies as u64, "body inside out", "bodies inside out");
-    let faces = counted(faces as u64, "face", "faces");
+    let bodies = counted(bodies, "body inside out", "bodies inside out");
+    let faces = counted(faces, "face", "faces");
     messages.detail(|| format!("{name}: {bodies} and {faces} turned"));
     Ok(())
 }

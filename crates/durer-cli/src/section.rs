@@ -102,7 +102,7 @@ pub fn apply(
         messages.warning(name, "--section leaves nothing of the model");
     }
     if cut.open_cuts > 0 {
-        messages.warning(name, agreeing(cut.open_cuts as u64, UNCAPPED));
+        messages.warning(name, agreeing(cut.open_cuts, UNCAPPED));
     }
     messages.detail(|| format!("{name}: caps with an area of {} square units", cut.cap_area));
     *scene = cut.scene;

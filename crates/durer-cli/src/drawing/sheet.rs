@@ -102,7 +102,7 @@ impl Shot {
             notes.push(format!("section {letter} leaves nothing of the model"));
         }
         if cut.open_cuts > 0 {
-            let cuts = agreeing(cut.open_cuts as u64, UNCAPPED);
+            let cuts = agreeing(cut.open_cuts, UNCAPPED);
             notes.push(format!("section {letter}: {cuts}"));
         }
         Ok(Some((cut, charge)))
