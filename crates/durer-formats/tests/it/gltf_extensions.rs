@@ -348,3 +348,25 @@ fn webp_is_taken_before_what_stands_in_for_it() {
             .starts_with("textures[0].extensions.EXT_texture_webp")
     );
 }
+
+#[test]
+fn only_extensions_that_change_the_picture_are_told() {
+    let told = |name: &str| {
+        let used = format!(r#""nodes": [{{"mesh": 0}}], "extensionsUsed": ["{name}"]"#);
+        let model = read(&triangle(&used)).unwrap();
+        model.warnings.iter().map(ToString::to_string).collect::<String>()
+    };
+    for silent in
+        ["VRMC_springBone", "KHR_physics_rigid_bodies", "EXT_structural_metadata", "MSFT_lod"]
+    {
+        assert_eq!(told(silent), "", "{silent}");
+    }
+    for (name, effect) in [
+        ("VRMC_materials_mtoon", "toon materials are drawn as ordinary ones"),
+        ("KHR_gaussian_splatting", "splats are drawn as points"),
+        ("KHR_materials_anisotropy", "drawn without its effect"),
+        ("ACME_new", "drawn without what it adds"),
+    ] {
+        assert_eq!(told(name), format!("extensionsUsed: {name} is not read; {effect}"));
+    }
+}
