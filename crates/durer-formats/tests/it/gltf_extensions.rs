@@ -352,7 +352,8 @@ fn webp_is_taken_before_what_stands_in_for_it() {
 #[test]
 fn only_extensions_that_change_the_picture_are_told() {
     let told = |name: &str| {
-        let used = format!(r#""nodes": [{{"mesh": 0}}], "extensionsUsed": ["{name}"]"#);
+        let scene = r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]"#;
+        let used = format!(r#"{scene}, "extensionsUsed": ["{name}"]"#);
         let model = read(&triangle(&used)).unwrap();
         model.warnings.iter().map(ToString::to_string).collect::<String>()
     };
