@@ -51,6 +51,7 @@ pub fn read(
         cells.push(shapes);
         fields.push(own);
     }
+    srids.of_file(&reader.system());
     let name = display_name(path);
     messages.warnings(&name, reader.warnings());
     if repaired > 0 {

@@ -36,6 +36,7 @@ pub fn read(
             all.append(&clean.area);
         }
     }
+    srids.of_file(&reader.system());
     messages.warnings(&display_name(path), reader.warnings());
     let rules = Rules {
         fill: WindingRule::Positive,

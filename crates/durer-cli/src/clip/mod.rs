@@ -5,6 +5,7 @@ mod cells;
 mod mask;
 mod report;
 mod srids;
+mod systems;
 mod tiling;
 mod window;
 
@@ -20,7 +21,8 @@ use crate::places::is_stream;
 use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
 use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule};
 use durer::parallel;
-use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
+use durer_formats::geo::crs::Crs;
+use durer_formats::geo::{Feature, GeoFormat, Geometry, System, Writer};
 use durer_formats::told::counted;
 use report::Report;
 use srids::Srids;
@@ -55,7 +57,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let (from, mut reader) =
         crate::layer::open(&args.input, args.from, args.layer.as_deref(), &args.running.work)?;
     let to = output_format(args, from)?;
-    let shift = Shift::new(&args.systems, &reader.system());
+    let shift = Shift::new(&args.systems);
     let fields = Fields::new(&args.fields);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
@@ -66,11 +68,11 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         mask_srids,
         ..Report::default()
     };
-    let is_shifted = shift.is_some();
     let mut ended = Ok(());
-    let further = {
+    let (is_shifted, further) = {
         let (messages, reader, report) = (&messages, &mut reader, &mut report);
-        let mut job = Job { args, to, messages, reader, report, failed: None, shift, fields };
+        let (failed, told) = (None, None);
+        let mut job = Job { args, to, messages, reader, report, failed, shift, fields, told };
         match (cells, args.region.tiles, mask) {
             (Some(cells), ..) => job.cut_by_cells(&cells)?,
             // Tiles in files of their own may be there in part.
@@ -80,7 +82,8 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
             (None, None, None) if converts(args, from, to) => job.convert()?,
             (None, None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
         }
-        [job.fields.told(), job.shift.as_ref().and_then(Shift::told), job.unfit()]
+        let shifted = job.shift.as_ref().and_then(Shift::told);
+        (job.shift.is_some(), [job.fields.told(), shifted, job.unfit(), job.no_degrees()])
     };
     if ended.is_err() && report.broken_off.is_none() {
         return ended;
@@ -242,9 +245,11 @@ fn tell(
         }
         _ => {}
     }
+    let told = args.systems.from_crs.as_ref().map_or_else(|| reader.system(), Crs::system);
+    found.extend(report.srids.other_mask(&report.mask_srids, &told));
     if !is_shifted {
         let is_told = reader.system().code.is_some() && to.is_geojson();
-        found.extend(report.srids.told(&report.mask_srids, joins(args), to, is_told));
+        found.extend(report.srids.told(joins(args), to, is_told));
     }
     found.extend(further);
     let (lines, points) = (report.given.lines, report.given.points);
@@ -285,6 +290,8 @@ struct Job<'a> {
     failed: Option<Failure>,
     shift: Option<Shift>,
     fields: Fields,
+    /// The coordinate system that the file states before its features; none before the first.
+    told: Option<System>,
 }
 
 impl Job<'_> {
@@ -309,6 +316,7 @@ impl Job<'_> {
                     break;
                 }
             };
+            self.begin();
             if !self.fields.apply(&mut feature) {
                 self.report.unchosen += 1;
                 continue;
@@ -339,6 +347,7 @@ impl Job<'_> {
         if writer.is_none() {
             *writer = Some(self.writer()?);
         }
+        self.check_degrees(feature);
         self.report.out.add(feature.geometry.as_ref());
         match writer {
             Some(writer) => writer.write(feature).map_err(|e| failure(&self.args.output, &e)),
@@ -347,6 +356,7 @@ impl Job<'_> {
     }
 
     fn end(&mut self, writer: Option<Writer<Sink>>) -> Result<(), Failure> {
+        self.check_system()?;
         let writer = match writer {
             Some(writer) => writer,
             None => self.writer()?,
@@ -359,59 +369,6 @@ impl Job<'_> {
     /// Returns a writer that knows the text before the features.
     fn writer(&self) -> Result<Writer<Sink>, Failure> {
         layer::writer(&self.args.output, self.to, &self.members(), self.system())
-    }
-
-    /// Returns the coordinate system of the output.
-    fn system(&self) -> System {
-        match (&self.shift, &self.args.systems.from_crs) {
-            (Some(shift), _) => shift.system.clone(),
-            (None, Some(from)) => from.system(),
-            (None, None) => {
-                let told = self.reader.system();
-                let common = self.report.srids.common().filter(|_| told.is_unknown());
-                common.map_or(told, System::of_code)
-            }
-        }
-    }
-
-    /// Returns the members of the collection, with the one for the coordinate system if GeoJSON needs it.
-    fn members(&self) -> Vec<Member> {
-        let mut members = self.reader.members().to_vec();
-        if !matches!(self.to, GeoFormat::GeoJson | GeoFormat::TopoJson) {
-            return members;
-        }
-        let is_new = self.shift.is_some() || self.args.systems.from_crs.is_some();
-        members.retain(|member| !is_new || member.name != CRS);
-        let told = members.iter().any(|member| member.name == CRS);
-        let told_by_file = is_new || !self.reader.system().is_unknown();
-        members.extend(self.system().member().filter(|_| !told && told_by_file));
-        members
-    }
-
-    /// Returns a warning if GeoJSON has coordinates other than longitude and latitude.
-    fn unfit(&self) -> Option<String> {
-        let code = self.system().code.filter(|code| *code != 4326 && self.to.is_lonlat())?;
-        let told = self.members().iter().any(|member| member.name == CRS);
-        let own = self.reader.members().iter().any(|member| member.name == CRS);
-        (told && (self.shift.is_some() || !own)).then(|| {
-            format!(
-                "{} should have longitudes and latitudes (RFC 7946); coordinates in EPSG:{code} are marked \
-                 by the older member crs, which some programs ignore",
-                self.to
-            )
-        })
-    }
-
-    /// Moves a feature to the requested system; returns whether it has a place there.
-    fn shifted(&mut self, feature: &mut Feature) -> Result<bool, Failure> {
-        match &mut self.shift {
-            Some(shift) => shift.apply(feature),
-            None => {
-                let from = self.args.systems.from_crs.as_ref();
-                feature.srid = from.map_or(feature.srid, |from| from.code());
-                Ok(true)
-            }
-        }
     }
 
     /// Writes all features as they are.
@@ -512,6 +469,3 @@ impl Job<'_> {
         self.end(writer)
     }
 }
-
-/// The member for the coordinate system in the older version of GeoJSON, as JSON.
-const CRS: &str = "\"crs\"";

@@ -50,6 +50,9 @@ pub struct Report {
     /// SRIDs of the mask.
     #[serde(skip)]
     pub mask_srids: Srids,
+    /// Features with coordinates that are no longitudes and latitudes, where the output has these.
+    #[serde(skip)]
+    pub far_degrees: u64,
     /// Features whose own member was replaced by the name of their tile.
     #[serde(skip)]
     pub replaced: u64,

@@ -1,6 +1,7 @@
 //! The numbers of coordinate systems given by features.
 
-use durer_formats::geo::GeoFormat;
+use durer_formats::geo::crs::{Crs, Transform};
+use durer_formats::geo::{GeoFormat, System};
 
 /// SRIDs of a file's features.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -24,6 +25,13 @@ impl Srids {
         }
     }
 
+    /// Adds the system that a file states for all its features, unless they have their own.
+    pub fn of_file(&mut self, told: &System) {
+        if self.first.is_empty() {
+            self.add(told.code);
+        }
+    }
+
     /// Returns the number that is common to all features with one.
     pub fn common(&self) -> Option<i32> {
         match self.first[..] {
@@ -39,20 +47,37 @@ impl Srids {
         format!("{name} {}{}", numbers.join(", "), if more { " and others" } else { "" })
     }
 
-    /// Returns warnings about coordinate systems that get lost or do not match; `is_told` tells whether the result
-    /// states the system of all features.
-    pub fn told(&self, mask: &Self, joined: bool, to: GeoFormat, is_told: bool) -> Vec<String> {
+    /// Returns a warning if the mask is in another coordinate system than the features; `told` is the system that their
+    /// file states for all.
+    pub fn other_mask(&self, mask: &Self, told: &System) -> Option<String> {
+        let mut own = self.clone();
+        own.of_file(told);
+        if own.first.is_empty() || mask.first.is_empty() {
+            return None;
+        }
+        let is_same = own.common().zip(mask.common()).is_some_and(|(own, mask)| {
+            let crs =
+                || Some(Transform::new(&Crs::of_code(own)?, &Crs::of_code(mask)?).is_identity());
+            own == mask || crs() == Some(true)
+        });
+        (!is_same).then(|| {
+            format!(
+                "the mask has another SRID, {} and not {}; coordinates are taken as they are (durer clip MASK --to-crs \
+                 converts it)",
+                mask.names(),
+                own.names()
+            )
+        })
+    }
+
+    /// Returns warnings about coordinate systems that get lost; `is_told` tells whether the result states the system of
+    /// all features.
+    pub fn told(&self, joined: bool, to: GeoFormat, is_told: bool) -> Vec<String> {
         let mut told = Vec::new();
         if self.first.is_empty() {
             return told;
         }
         let several = self.first.len() > 1;
-        let is_other = several || mask.first.len() > 1 || mask.first != self.first;
-        if is_other && !mask.first.is_empty() {
-            let [own, its] = [self.names(), mask.names()];
-            let message = format!("the mask has another SRID, {its} and not {own}");
-            told.push(format!("{message}; coordinates are taken as they are"));
-        }
         let is_meant = to.is_lonlat() && self.first == [4326];
         if !to.tells_system() && !is_meant && !is_told {
             let are = if several { "are" } else { "is" };

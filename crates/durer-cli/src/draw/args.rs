@@ -94,6 +94,10 @@ pub struct PictureArgs {
     /// The format of the output: png, jpeg or webp; svg, pdf or dxf for vectors [default: by its suffix, else png]
     #[arg(long, value_name = "FORMAT", value_parser = values::map_kind())]
     pub format: Option<Kind>,
+    /// The units of a .dxf: those of the map's coordinates, as drawings of the same place have them, or millimetres on
+    /// the sheet [default: map; mm for an SVG]
+    #[arg(long, value_name = "UNITS")]
+    pub dxf_units: Option<DxfUnits>,
     /// Compression and quality of the file.
     #[command(flatten)]
     pub encoding: EncodingArgs,
@@ -115,6 +119,15 @@ pub struct FontArgs {
     /// Also use the installed fonts; pictures then depend on the machine
     #[arg(long)]
     pub system_fonts: bool,
+}
+
+/// `--dxf-units`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DxfUnits {
+    /// Places keep their coordinates
+    Map,
+    /// Millimetres from the lower left corner of the sheet
+    Mm,
 }
 
 /// `--aa`.

@@ -1,5 +1,6 @@
 //! A map of layers.
 
+use super::args::DxfUnits;
 use super::layers::{Labels, Priority};
 use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, Surface, fonts, is_for_cad, sides};
@@ -7,8 +8,9 @@ use crate::failure::Failure;
 use crate::input::display_name;
 use durer::curve::text::Font;
 use durer::map::{self, Label, Map, Style};
-use durer::math::Rect;
-use durer::view::window::Window;
+use durer::math::{DVec2, Rect};
+use durer::view::window::{Window, WindowToViewport};
+use durer_formats::drawing::DxfFrame;
 use durer_formats::geo::{Beside, Feature, Reader};
 use durer_formats::svg::no_glyphs;
 use std::time::Instant;
@@ -22,6 +24,16 @@ const ABBREV: &str = "ABBREV";
 
 /// Number of fields that a message lists when a label's field is missing.
 const LISTED: usize = 12;
+
+/// Pixels of a millimetre: 96 are an inch.
+const PIXELS_PER_MILLIMETRE: f64 = 96.0 / 25.4;
+
+/// Last digit of coordinates in files for CAD, as a share of the map's longer side: coarser than the error of f64 on the
+/// way to the sheet and back, finer than any map.
+const PRECISION: f64 = 1e-11;
+
+/// The most digits after the point of coordinates in files for CAD.
+const MOST_DIGITS: usize = 15;
 
 impl Job<'_> {
     /// Returns everything that the layers paint.
@@ -45,6 +57,9 @@ impl Job<'_> {
         let target: T = self.surface(size, [255; 4])?;
         let viewport = self.viewport(size)?;
         let mut map = Map::new(target, &window, &viewport).map_err(usage)?;
+        if self.args.picture.dxf_units != Some(DxfUnits::Mm) {
+            self.frame = frame(map.screen(), size);
+        }
         let mut labels = Vec::new();
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
             let name = display_name(&layer.layer.input);
@@ -142,6 +157,21 @@ impl Job<'_> {
             self.report.warnings.push(format!("and {more} more"));
         }
         Ok(features)
+    }
+}
+
+/// Returns the place of a sheet of a size in pixels in the coordinates of the map.
+fn frame(screen: &WindowToViewport, size: (u32, u32)) -> DxfFrame {
+    let [width, height] = [size.0, size.1].map(f64::from);
+    let [pixels_per_unit, ..] = screen.coefficients();
+    let units_per_millimetre = PIXELS_PER_MILLIMETRE / pixels_per_unit;
+    let least = width.max(height) / pixels_per_unit * PRECISION;
+    let digits =
+        (0..MOST_DIGITS).find(|digits| 10_f64.powi(-i32::try_from(*digits).unwrap_or(0)) <= least);
+    DxfFrame {
+        origin: screen.to_world(DVec2::new(0.0, height)),
+        units_per_millimetre,
+        digits: digits.unwrap_or(MOST_DIGITS),
     }
 }
 

@@ -30,7 +30,7 @@ use durer::target::drawing::Drawing;
 use durer::target::sheet::Sheet;
 use durer::view::window::{PixelRect, Viewport};
 use durer::work::Work;
-use durer_formats::drawing::{self, DrawingFormat, FileOptions};
+use durer_formats::drawing::{self, DrawingFormat, DxfFrame, FileOptions};
 use durer_formats::geo::GeoFormat;
 use durer_formats::{Limits, Resources, Warning, archive, gzip};
 use layers::Layer;
@@ -52,7 +52,7 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
         output: target.to_string(),
         ..Report::default()
     };
-    let mut job = Job { args, messages: &messages, report: &mut report };
+    let mut job = Job::new(args, &messages, &mut report);
     let mut given = Vec::new();
     for layer in &args.layers.0 {
         given.push(job.read(layer)?);
@@ -60,11 +60,11 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     let kind = wanted(args).kind;
     let encode = match kind.drawing() {
         Some(format) => {
-            let sheet = job.draw_vectors(given, format)?;
+            let vectors = job.draw_vectors(given, format)?;
             messages.progress.stage(|| format!("writing {target}"));
             let encode = Instant::now();
             let work = &args.running.work;
-            output::deliver(&target, work, |out| write(out, format, &sheet, work))?;
+            output::deliver(&target, work, |out| write(out, format, &vectors, work))?;
             encode
         }
         None => {
@@ -87,14 +87,20 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
+/// A sheet, and its place in a file for CAD.
+struct Vectors {
+    sheet: Sheet,
+    frame: DxfFrame,
+}
+
 /// Writes a sheet as a file of vectors.
 fn write(
     out: &mut impl std::io::Write,
     format: DrawingFormat,
-    sheet: &Sheet,
+    Vectors { sheet, frame }: &Vectors,
     work: &Work,
 ) -> durer_formats::Result<()> {
-    let options = FileOptions { work: work.clone(), ..FileOptions::default() };
+    let options = FileOptions { work: work.clone(), dxf_frame: *frame, ..FileOptions::default() };
     drawing::write(out, format, sheet, &Drawing::default(), &options)
 }
 
@@ -115,9 +121,9 @@ pub fn vectors(args: &DrawArgs, layers: Vec<Vec<u8>>) -> Result<Vec<u8>, Failure
         )));
     };
     check_kind(args, kind)?;
-    let sheet = in_memory(args, layers, |job, given| job.draw_vectors(given, format))?;
+    let vectors = in_memory(args, layers, |job, given| job.draw_vectors(given, format))?;
     let mut bytes = Vec::new();
-    write(&mut bytes, format, &sheet, &args.running.work)
+    write(&mut bytes, format, &vectors, &args.running.work)
         .map_err(|e| Failure::Data(e.to_string()))?;
     Ok(bytes)
 }
@@ -130,7 +136,7 @@ fn in_memory<T>(
 ) -> Result<T, Failure> {
     let messages = Messages::new(&args.running, 1);
     let mut report = Report::default();
-    let mut job = Job { args, messages: &messages, report: &mut report };
+    let mut job = Job::new(args, &messages, &mut report);
     let mut given = Vec::new();
     for (layer, bytes) in args.layers.0.iter().zip(layers) {
         given.push(job.given(layer, bytes)?);
@@ -143,6 +149,10 @@ fn check_kind(args: &DrawArgs, kind: Kind) -> Result<(), Failure> {
     args.picture.encoding.check(&[kind])?;
     if kind.is_vector() && args.picture.aa == Smoothing::None {
         let message = "--aa: vectors have no pixels; end the name in .png, or leave the option out";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    if args.picture.dxf_units.is_some() && kind.drawing() != Some(DrawingFormat::Dxf) {
+        let message = "--dxf-units: it is for .dxf files; leave it out";
         return Err(Failure::Usage(message.to_owned()));
     }
     Ok(())
@@ -176,6 +186,8 @@ struct Job<'a> {
     args: &'a DrawArgs,
     messages: &'a Messages,
     report: &'a mut Report,
+    /// The place of the sheet in a file for CAD.
+    frame: DxfFrame,
 }
 
 /// A file that has been read.
@@ -194,6 +206,12 @@ struct Unpacked {
     beside: Box<dyn Resources>,
     /// The layer of the file to draw.
     layer: Option<String>,
+}
+
+impl<'a> Job<'a> {
+    fn new(args: &'a DrawArgs, messages: &'a Messages, report: &'a mut Report) -> Self {
+        Self { args, messages, report, frame: DxfFrame::default() }
+    }
 }
 
 impl Job<'_> {
@@ -223,18 +241,19 @@ impl Job<'_> {
         &mut self,
         given: Vec<Given<'_>>,
         format: DrawingFormat,
-    ) -> Result<Sheet, Failure> {
+    ) -> Result<Vectors, Failure> {
         self.timed(|this| {
             let painter: SheetPainter = this.painted(given)?;
             painter.work().check().map_err(|e| Failure::of_library(&e).named(&this.names()))?;
-            painter.into_sheet().map_err(|kinds| {
+            let sheet = painter.into_sheet().map_err(|kinds| {
                 let kinds = Vec::from_iter(kinds).join(", ");
                 let name = this.names();
                 let vectors = if format == DrawingFormat::Dxf { "DXF" } else { "vectors" };
                 Failure::Data(format!(
                     "{name}: {kinds} cannot be written as {vectors}; a picture (.png) shows them"
                 ))
-            })
+            })?;
+            Ok(Vectors { sheet, frame: this.frame })
         })
     }
 

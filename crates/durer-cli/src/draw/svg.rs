@@ -1,5 +1,6 @@
 //! A drawing in SVG.
 
+use super::args::DxfUnits;
 use super::{Given, Job, Surface, fonts, frame, has_folder, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
@@ -22,6 +23,11 @@ impl Job<'_> {
         }
         if given.layer.styled || given.layer.style != Style::default() {
             let message = "--fill, --stroke and other styles are for map data; an SVG has its own";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        if self.args.picture.dxf_units == Some(DxfUnits::Map) {
+            let message =
+                "--dxf-units map: an SVG has no map's coordinates; its .dxf has millimetres";
             return Err(Failure::Usage(message.to_owned()));
         }
         let start = Instant::now();

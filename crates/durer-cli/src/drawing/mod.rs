@@ -340,6 +340,7 @@ pub fn encode(
         dxf: dxf_strokes(args),
         machine: args.drawing.machine.options(),
         work: args.running.work.clone(),
+        ..FileOptions::default()
     };
     durer_formats::drawing::write(out, format, sheet, drawing, &options)
 }

@@ -3,8 +3,11 @@
 use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
-use durer_formats::geo::{Feature, System};
+use durer_formats::geo::{Feature, Member, System};
 use durer_formats::told::counted;
+
+/// The member for the coordinate system in the older version of GeoJSON, as JSON.
+pub const CRS: &str = "\"crs\"";
 
 /// Options for coordinate systems.
 #[derive(Debug, Clone, Default, Args)]
@@ -25,7 +28,11 @@ pub struct SystemArgs {
 #[derive(Debug, Clone)]
 pub struct Shift {
     to: Crs,
-    /// The transform, if all coordinates are in one system.
+    /// The system of the input that the options give.
+    given: Option<Crs>,
+    /// The system that the file states.
+    told: System,
+    /// The transform from that system, or from the given one, if it is known.
     common: Option<Transform>,
     /// The transform for features with the number of their own system: the last number, and its transform.
     own: Option<(i32, Transform)>,
@@ -38,22 +45,31 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// Builds the conversion that the options request, from the system that the file states; `None` if they request
-    /// none.
-    pub fn new(args: &SystemArgs, told: &System) -> Option<Self> {
+    /// Builds the conversion that the options request; `None` if they request none.
+    pub fn new(args: &SystemArgs) -> Option<Self> {
         let to = args.to_crs.clone()?;
-        let from = args.from_crs.clone().map_or_else(|| Crs::of_system(told), Ok);
-        let (common, unknown) = match from {
-            Ok(from) => (Some(Transform::new(&from, &to)), String::new()),
+        let (given, system) = (args.from_crs.clone(), to.system());
+        let (told, common, own, unknown) = Default::default();
+        let mut shift = Self { to, given, told, common, own, unknown, system, lost: 0 };
+        shift.begin(System::default());
+        Some(shift)
+    }
+
+    /// Sets the system that the file states, when it is known: with the first feature.
+    pub fn begin(&mut self, told: System) {
+        let from = self.given.clone().map_or_else(|| Crs::of_system(&told), Ok);
+        (self.common, self.unknown) = match from {
+            Ok(from) => (Some(Transform::new(&from, &self.to)), String::new()),
             Err(why) => (None, why),
         };
-        let system = to.system();
-        Some(Self { to, common, own: None, unknown, system, lost: 0 })
+        self.told = told;
     }
 
     /// Returns the transform from a feature's system.
     fn transform(&mut self, srid: Option<i32>) -> Result<&Transform, Failure> {
-        if let Some(common) = &self.common {
+        // A feature may be in another system than the file.
+        let is_own = self.given.is_none() && srid.is_some() && srid != self.told.code;
+        if let (Some(common), false) = (&self.common, is_own) {
             return Ok(common);
         }
         let wrong = |why: &str| {
@@ -84,6 +100,9 @@ impl Shift {
             }
         }
         feature.srid = self.system.code;
+        let is_old = |member: &Member| member.name == CRS;
+        feature.members.retain(|member| !is_old(member));
+        feature.geometry_members.retain(|member| !is_old(member));
         Ok(true)
     }
 

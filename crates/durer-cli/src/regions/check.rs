@@ -137,7 +137,8 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
     // Features mended or left out during reading count as faults, too.
-    let mended = reader.warnings().len() as u64 + reader.further_warnings();
+    let mended = reader.warnings().iter().filter(|warning| !reader.is_note(warning)).count();
+    let mended = mended as u64 + reader.further_warnings();
     if mended > 0 {
         report.counts.insert("reading", mended);
     }

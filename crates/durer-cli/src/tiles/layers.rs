@@ -190,8 +190,19 @@ fn read_file(
         }
         messages.progress.stage(|| format!("{} features", all.read));
     }
-    messages.warnings(&shown, reader.warnings());
-    all.warnings.extend(reader.warnings().iter().map(|warning| format!("{shown}: {warning}")));
+    let mut told = reader.warnings().to_vec();
+    if layers.len() > 1 {
+        // The hint at --layer is for other commands.
+        let note = format!(
+            "its {} layers become one; read from a file, each becomes a layer",
+            layers.len()
+        );
+        told.iter_mut()
+            .filter(|warning| reader.is_note(warning))
+            .for_each(|w| w.message.clone_from(&note));
+    }
+    messages.warnings(&shown, &told);
+    all.warnings.extend(told.iter().map(|warning| format!("{shown}: {warning}")));
     let none = match (all.read == before, kept) {
         (true, _) => Some("there is no feature in it".to_owned()),
         (false, 0) => {

@@ -1,7 +1,7 @@
 //! Sheets as DXF for CAD: AutoCAD 2004 (AC1018), the first version with colours beyond the palette; readers of DXF 2000
 //! read it.
 //!
-//! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the sheet is one
+//! Model space in millimetres, y up, the origin in the lower left corner of the sheet, or in the units of a [`DxfFrame`]. Each layer of the sheet is one
 //! with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are LWPOLYLINE, curves are
 //! LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, dots are CIRCLE, text is TEXT, dimensions are DIMENSION
 //! with their blocks, areas are HATCH with solid fill.
@@ -12,8 +12,8 @@ use super::MADE;
 use super::dxf_dimension::Dimensions;
 use super::dxf_entity::{block, entity};
 use super::dxf_tags::{
-    APPIDS, BLOCK_RECORDS, CONTINUOUS, DxfStrokes, FIRST, GROUPS, HIDDEN, LAYERS, LTYPES, MODEL,
-    PAPER, ROOT, STYLES, Tags, UCSS, VIEWS, VPORTS, palette, symbol, true_color, weight,
+    APPIDS, BLOCK_RECORDS, CONTINUOUS, DxfFrame, DxfStrokes, FIRST, GROUPS, HIDDEN, LAYERS, LTYPES,
+    MODEL, PAPER, ROOT, STYLES, Tags, UCSS, VIEWS, VPORTS, palette, symbol, true_color, weight,
 };
 use crate::Result;
 use durer::math::DVec2;
@@ -26,18 +26,18 @@ use std::io::Write;
 /// # Errors
 /// [`crate::Error::Io`] if writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result<()> {
-    write_within(out, sheet, strokes, &Work::default())
+    write_within(out, sheet, (strokes, DxfFrame::default()), &Work::default())
 }
 
-/// Writes it within a budget: all but the header is made in memory, as the header names the last handle.
+/// Writes it into a frame within a budget: all but the header is made in memory, as the header names the last handle.
 pub(super) fn write_within(
     out: &mut impl Write,
     sheet: &Sheet,
-    strokes: DxfStrokes,
+    (strokes, frame): (DxfStrokes, DxfFrame),
     work: &Work,
 ) -> Result<()> {
     let mut charge = work.charge(MADE, 0)?;
-    let mut body = Tags::new(sheet, FIRST);
+    let mut body = Tags::new(sheet, frame, FIRST);
     let dimensions = Dimensions::of(&mut body, sheet, strokes);
     tables(&mut body, sheet, &dimensions);
     blocks(&mut body, sheet, &dimensions);
@@ -62,7 +62,7 @@ pub(super) fn write_within(
     body.tag(0, "ENDSEC");
     objects(&mut body);
     body.tag(0, "EOF");
-    let mut head = Tags::new(sheet, 0);
+    let mut head = Tags::new(sheet, frame, 0);
     header(&mut head, sheet, &dimensions, body.next);
     out.write_all(head.text.as_bytes())?;
     out.write_all(body.text.as_bytes())?;
@@ -74,14 +74,16 @@ fn header(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions, seed: u32) {
     tags.tag(9, "$ACADVER").tag(1, "AC1018");
     tags.tag(9, "$DWGCODEPAGE").tag(3, "ANSI_1252");
     tags.tag(9, "$INSBASE").point3(10, DVec2::ZERO);
-    tags.tag(9, "$EXTMIN").point3(10, DVec2::ZERO);
-    tags.tag(9, "$EXTMAX").point3(10, sheet.size);
-    tags.tag(9, "$LIMMIN").point(10, DVec2::ZERO);
-    tags.tag(9, "$LIMMAX").point(10, sheet.size);
-    tags.tag(9, "$LTSCALE").real(40, 1.0);
-    // Line weights are shown; lengths are metric, in millimetres.
+    tags.tag(9, "$EXTMIN").place3(10, DVec2::ZERO);
+    tags.tag(9, "$EXTMAX").place3(10, sheet.size);
+    tags.tag(9, "$LIMMIN").place(10, DVec2::ZERO);
+    tags.tag(9, "$LIMMAX").place(10, sheet.size);
+    // Line types have millimetres of the sheet.
+    tags.tag(9, "$LTSCALE").length(40, 1.0);
+    // Line weights are shown; lengths are metric, in millimetres or in units that are not known.
     tags.tag(9, "$LWDISPLAY").int(290, 1);
-    tags.tag(9, "$INSUNITS").int(70, 4);
+    let units = if tags.frame.is_sheet() { 4 } else { 0 };
+    tags.tag(9, "$INSUNITS").int(70, units);
     tags.tag(9, "$MEASUREMENT").int(70, 1);
     dimensions.variables(tags);
     tags.tag(9, "$HANDSEED").handle(5, seed);
@@ -125,10 +127,10 @@ fn tables(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions) {
 fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.table("VPORT", VPORTS, 1);
     tags.record("VPORT", VPORTS, "AcDbViewportTableRecord").tag(2, "*Active").int(70, 0);
-    tags.point(10, DVec2::ZERO).point(11, DVec2::ONE).point(12, sheet.size * 0.5);
+    tags.point(10, DVec2::ZERO).point(11, DVec2::ONE).place(12, sheet.size * 0.5);
     tags.point(13, DVec2::ZERO).point(14, DVec2::splat(10.0)).point(15, DVec2::splat(10.0));
     tags.point(16, DVec2::ZERO).real(36, 1.0).point3(17, DVec2::ZERO);
-    tags.real(40, sheet.size.y.max(1.0))
+    tags.length(40, sheet.size.y.max(1.0))
         .real(41, (sheet.size.x / sheet.size.y.max(1e-9)).max(1e-9));
     tags.real(42, 50.0).real(43, 0.0).real(44, 0.0).real(50, 0.0).real(51, 0.0);
     for code in 71..=78 {

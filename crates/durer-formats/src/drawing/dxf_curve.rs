@@ -88,7 +88,7 @@ fn goes_on(a: &Piece, b: &Piece) -> bool {
 /// Writes a line.
 pub(super) fn line(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) {
     begin(tags, "LINE", to.layer, to.pen);
-    tags.class("AcDbLine").point3(10, start).point3(11, end);
+    tags.class("AcDbLine").place3(10, start).place3(11, end);
 }
 
 /// A stroke shorter than this part of its width is a dot.
@@ -102,7 +102,7 @@ pub(super) fn dot(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) ->
     };
     begin(tags, "CIRCLE", to.layer, None);
     tags.int(370, 0).class("AcDbCircle");
-    tags.point3(10, (start + end) / 2.0).real(40, pen.width / 2.0);
+    tags.place3(10, (start + end) / 2.0).length(40, pen.width / 2.0);
     true
 }
 
@@ -113,7 +113,7 @@ pub(super) fn polyline(tags: &mut Tags, to: &Target<'_>, points: &[(DVec2, f64)]
     // 128: the line type runs on over corners.
     tags.int(70, if closed { 129 } else { 128 }).real(43, 0.0);
     for (p, bulge) in points {
-        tags.point(10, *p);
+        tags.place(10, *p);
         if *bulge != 0.0 {
             self::bulge(tags, *bulge);
         }
@@ -129,7 +129,7 @@ fn arc(tags: &mut Tags, to: &Target<'_>, arc: &Arc) {
     if arc.is_circular() {
         let kind = if arc.is_whole() { "CIRCLE" } else { "ARC" };
         begin(tags, kind, to.layer, to.pen);
-        tags.class("AcDbCircle").point3(10, arc.center).real(40, arc.axis.length());
+        tags.class("AcDbCircle").place3(10, arc.center).length(40, arc.axis.length());
         if !arc.is_whole() {
             let first = libm::atan2(arc.axis.y, arc.axis.x);
             let degrees = |angle: f64| within_turn(first + angle).to_degrees();
@@ -139,7 +139,7 @@ fn arc(tags: &mut Tags, to: &Target<'_>, arc: &Arc) {
         return;
     }
     begin(tags, "ELLIPSE", to.layer, to.pen);
-    tags.class("AcDbEllipse").point3(10, arc.center).point3(11, arc.axis);
+    tags.class("AcDbEllipse").place3(10, arc.center).vector(11, arc.axis).real(31, 0.0);
     tags.real(210, 0.0).real(220, 0.0).real(230, 1.0).precise(40, arc.ratio, DIGITS);
     let (first, sweep) = match arc.is_whole() {
         true => (0.0, TAU),
@@ -176,6 +176,6 @@ fn spline(tags: &mut Tags, to: &Target<'_>, row: &[(DVec2, &Piece)]) {
         tags.real(40, *knot);
     });
     control.iter().for_each(|p| {
-        tags.point3(10, *p);
+        tags.place3(10, *p);
     });
 }

@@ -61,14 +61,14 @@ pub(super) fn entity(
         Mark::Text { at, text, height, anchor, pen } => {
             begin(tags, "TEXT", layer, sheet.pens.get(*pen));
             let at = place(at);
-            tags.class("AcDbText").point3(10, at).real(40, *height).tag(1, &string(text));
+            tags.class("AcDbText").place3(10, at).length(40, *height).tag(1, &string(text));
             let alignment = match anchor {
                 Anchor::Start => 0,
                 Anchor::Middle => 1,
                 Anchor::End => 2,
             };
             if alignment != 0 {
-                tags.int(72, alignment).point3(11, at);
+                tags.int(72, alignment).place3(11, at);
             }
             tags.class("AcDbText");
         }
@@ -103,7 +103,7 @@ fn hatch(tags: &mut Tags, rings: &[Vec<(DVec2, f64)>]) {
         let is_round = ring.iter().any(|c| c.1 != 0.0);
         tags.int(92, 3).int(72, i64::from(is_round)).int(73, 1).int(93, ring.len() as i64);
         for (p, bulge) in ring {
-            tags.point(10, *p);
+            tags.place(10, *p);
             if is_round {
                 dxf_curve::bulge(tags, *bulge);
             }

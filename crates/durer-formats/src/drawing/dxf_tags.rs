@@ -37,9 +37,42 @@ pub enum DxfStrokes {
     Pieces,
 }
 
+/// Place of a sheet in the coordinates of a DXF file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DxfFrame {
+    /// Lower left corner of the sheet in the file.
+    pub origin: DVec2,
+    /// Units of the file per millimetre of the sheet, > 0. Line weights are millimetres in any frame, and dashes have the
+    /// lengths that they have on the sheet.
+    pub units_per_millimetre: f64,
+    /// Number of digits after the point.
+    pub digits: usize,
+}
+
+impl Default for DxfFrame {
+    /// Returns the frame in millimetres from the sheet's corner: micrometres are the last digit.
+    fn default() -> Self {
+        Self { origin: DVec2::ZERO, units_per_millimetre: 1.0, digits: 6 }
+    }
+}
+
+impl DxfFrame {
+    /// Returns whether the file's units are millimetres from the sheet's corner.
+    pub(super) fn is_sheet(&self) -> bool {
+        (self.origin, self.units_per_millimetre) == (DVec2::ZERO, 1.0)
+    }
+
+    /// Returns a place that is given in millimetres from the lower left corner of the sheet.
+    pub(super) fn place(&self, p: DVec2) -> DVec2 {
+        self.origin + p * self.units_per_millimetre
+    }
+}
+
 /// Group codes and values, a line each.
 pub(super) struct Tags {
     pub text: String,
+    /// The place of the sheet in the file.
+    pub frame: DxfFrame,
     /// The next free handle.
     pub next: u32,
     /// The block record that entities belong to.
@@ -86,10 +119,10 @@ impl Dashed {
 
 impl Tags {
     /// Creates an empty part of a file of a sheet.
-    pub fn new(sheet: &Sheet, next: u32) -> Self {
+    pub fn new(sheet: &Sheet, frame: DxfFrame, next: u32) -> Self {
         let (text, line_type) = (String::new(), CONTINUOUS.to_owned());
         let dashed = Dashed::of_sheet(sheet);
-        Self { text, next, owner: MODEL, line_type, color: None, dashed }
+        Self { text, frame, next, owner: MODEL, line_type, color: None, dashed }
     }
 
     /// Returns the name of a pen's line type.
@@ -136,6 +169,26 @@ impl Tags {
 
     pub fn point3(&mut self, code: u16, p: DVec2) -> &mut Self {
         self.point(code, p).real(code + 20, 0.0)
+    }
+
+    /// Writes a vector of the sheet, in millimetres.
+    pub fn vector(&mut self, code: u16, v: DVec2) -> &mut Self {
+        self.length(code, v.x).length(code + 10, v.y)
+    }
+
+    /// Writes a length of the sheet, in millimetres.
+    pub fn length(&mut self, code: u16, length: f64) -> &mut Self {
+        self.precise(code, length * self.frame.units_per_millimetre, self.frame.digits)
+    }
+
+    /// Writes a place of the sheet, in millimetres from its lower left corner.
+    pub fn place(&mut self, code: u16, p: DVec2) -> &mut Self {
+        let (p, digits) = (self.frame.place(p), self.frame.digits);
+        self.precise(code, p.x, digits).precise(code + 10, p.y, digits)
+    }
+
+    pub fn place3(&mut self, code: u16, p: DVec2) -> &mut Self {
+        self.place(code, p).real(code + 20, 0.0)
     }
 
     pub fn class(&mut self, name: &str) -> &mut Self {

@@ -20,7 +20,7 @@ mod svg_curve;
 mod svg_paint;
 
 pub use dxf::write as write_dxf;
-pub use dxf_tags::DxfStrokes;
+pub use dxf_tags::{DxfFrame, DxfStrokes};
 pub use gcode::write as write_gcode;
 pub use geojson::write as write_geojson;
 pub use hpgl::write as write_hpgl;
@@ -108,8 +108,10 @@ impl FromStr for DrawingFormat {
 /// Options of some of the formats.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FileOptions {
-    /// Options for DXF.
+    /// Entities of strokes in DXF.
     pub dxf: DxfStrokes,
+    /// Place of the sheet in DXF; sheets with dimensions have the default.
+    pub dxf_frame: DxfFrame,
     /// Options for HPGL and G-code.
     pub machine: MachineOptions,
     /// Budget for files that are made in memory: PDF and DXF.
@@ -123,8 +125,8 @@ const MADE: &str = "file of the drawing";
 ///
 /// # Errors
 /// [`Error::Io`] if writing fails; [`Error::Library`] if the budget has no room for the file, for gradients and groups of
-/// marks in formats other than SVG and PDF, and for gradients in PDF that repeat more than some thousand times; the errors
-/// of [`MachineOptions::check`].
+/// marks in formats other than SVG and PDF, for dimensions in DXF of another frame than the default, and for gradients in
+/// PDF that repeat more than some thousand times; the errors of [`MachineOptions::check`].
 pub fn write(
     out: &mut impl Write,
     format: DrawingFormat,
@@ -142,10 +144,19 @@ pub fn write(
     {
         return Err(durer::Error::Unsupported { what, instead: "write SVG or PDF" }.into());
     }
+    if format == DrawingFormat::Dxf && !options.dxf_frame.is_sheet() {
+        let mut marks = sheet.layers.iter().flat_map(|layer| &layer.marks);
+        if marks.any(|mark| matches!(mark, Mark::Dimension(_))) {
+            let (what, instead) = ("a dimension in units of a map", "write millimetres");
+            return Err(durer::Error::Unsupported { what, instead }.into());
+        }
+    }
     match format {
         DrawingFormat::Svg => write_svg(out, sheet),
         DrawingFormat::Pdf => pdf::write_within(out, sheet, &options.work),
-        DrawingFormat::Dxf => dxf::write_within(out, sheet, options.dxf, &options.work),
+        DrawingFormat::Dxf => {
+            dxf::write_within(out, sheet, (options.dxf, options.dxf_frame), &options.work)
+        }
         DrawingFormat::Hpgl => hpgl::write_for(out, sheet, &options.machine),
         DrawingFormat::Gcode => write_gcode(out, sheet, &options.machine),
         DrawingFormat::GeoJson => write_geojson(out, drawing),

@@ -8,6 +8,7 @@
 use super::members::{members, object, quoted};
 use super::{Feature, Geometry, Member, Points, Warnings, wkb, wkt};
 use crate::text::{Tally, name};
+use crate::told::counted;
 use crate::{Error, Place, Result};
 use durer::math::DVec2;
 use std::borrow::Cow;
@@ -28,7 +29,7 @@ const GEOMETRY: [&str; 10] = [
 ];
 
 /// Names of columns with x and y, in lower case.
-const PLACES: [(&str, &str); 11] = [
+const PLACES: [(&str, &str); 13] = [
     ("lon", "lat"),
     ("lng", "lat"),
     ("long", "lat"),
@@ -40,6 +41,8 @@ const PLACES: [(&str, &str); 11] = [
     ("coord_x", "coord_y"),
     ("point_x", "point_y"),
     ("xcoord", "ycoord"),
+    ("laenge", "breite"),
+    ("länge", "breite"),
 ];
 
 /// Names of columns with a height beside x and y, in lower case.
@@ -62,7 +65,9 @@ enum Kind {
 
 /// Returns whether the first row names columns with geometries.
 pub fn sniff(text: &[u8]) -> bool {
-    let end = text.iter().position(|&b| b == b'\n').unwrap_or(text.len());
+    let skipped = Rows::after_separator(text).map_or(0, |rows| rows.at + 1);
+    let names = text.get(skipped..).unwrap_or_default();
+    let end = names.iter().position(|&b| b == b'\n').map_or(text.len(), |end| skipped + end);
     let Some(line) = text.get(..end) else { return false };
     let mut rows = Rows::new(line);
     let Some(first) = rows.next(line) else { return false };
@@ -75,7 +80,11 @@ fn keys(row: &[Cow<'_, [u8]>]) -> Vec<String> {
 
 /// Returns the columns of geometries, by their names.
 fn places(keys: &[String]) -> Option<Where> {
-    let lower: Vec<String> = keys.iter().map(|key| key.to_lowercase()).collect();
+    // A unit may follow in brackets.
+    let bare = |key: &String| {
+        key.to_lowercase().split(['(', '[']).next().map(str::trim_end).map(str::to_owned)
+    };
+    let lower: Vec<String> = keys.iter().map(|key| bare(key).unwrap_or_default()).collect();
     let index = |name: &&str| lower.iter().position(|key| key == *name);
     // The last of that name: tables that are written here have the geometry at the end, after any field of the same
     // name.
@@ -97,6 +106,9 @@ struct Rows {
 impl Rows {
     /// Creates a walk at the first row, which determines the separator of values.
     fn new(text: &[u8]) -> Self {
+        if let Some(rows) = Self::after_separator(text) {
+            return rows;
+        }
         let mut counts = [0_u32; 4];
         let mut quoted = false;
         for &byte in text {
@@ -113,6 +125,20 @@ impl Rows {
         // Of several equally frequent ones, the first.
         let most = DELIMITERS.iter().zip(counts).rev().max_by_key(|(_, count)| *count);
         Self { at: 0, line: 1, delimiter: most.map_or(b',', |(&d, _)| d) }
+    }
+
+    /// Creates a walk after the line `sep=;` with which Excel names the separator; `None` without one.
+    fn after_separator(text: &[u8]) -> Option<Self> {
+        let line = text.split(|&b| b == b'\n').next()?;
+        match *line.trim_ascii_end().strip_prefix(b"sep=")? {
+            [] if line.starts_with(b"sep=\t") => {
+                Some(Self { at: line.len(), line: 1, delimiter: b'\t' })
+            }
+            [delimiter] if DELIMITERS.contains(&delimiter) => {
+                Some(Self { at: line.len(), line: 1, delimiter })
+            }
+            _ => None,
+        }
     }
 
     /// Steps to the next row that is not empty, and returns its line.
@@ -234,18 +260,20 @@ impl Reader {
     }
 
     fn tell(&mut self, warnings: &mut Warnings) {
-        for (tally, what) in [
+        for (tally, one, several) in [
             (
                 std::mem::take(&mut self.ragged),
+                "row has more or fewer values than there are columns",
                 "rows have more or fewer values than there are columns",
             ),
             (
                 std::mem::take(&mut self.nowhere),
+                "row has no numbers in the columns of its place; it has no geometry",
                 "rows have no numbers in the columns of their place; they have no geometry",
             ),
         ] {
             if tally.count > 0 {
-                warnings.push(tally.first, format!("{} {what}", tally.count));
+                warnings.push(tally.first, counted(tally.count, one, several));
             }
         }
     }

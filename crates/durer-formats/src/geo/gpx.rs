@@ -1,8 +1,9 @@
 //! Waypoints, routes and tracks of GPX 1.0 and 1.1 as points, lines and groups of lines.
 
 use super::geojson::finish_line;
+use super::markup::{MIXED, push};
 use super::members::{object, quoted};
-use super::{Dimensions, Feature, Geometry, Member, Points, Warnings};
+use super::{Feature, Geometry, Member, Points, Warnings};
 use crate::collada::document::Document;
 use crate::text::Tally;
 use crate::{Error, Result};
@@ -26,7 +27,12 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
     let document = Document::parse(text, MAX_MEMORY)?;
     let root = document.root().filter(|&root| document.name(root) == "gpx");
     let root = root.ok_or_else(|| Error::line(1, 0, "there is no gpx element"))?;
-    let mut reader = Reader { document, places: Tally::default(), times: Tally::default() };
+    let mut reader = Reader {
+        document,
+        places: Tally::default(),
+        times: Tally::default(),
+        mixed: Tally::default(),
+    };
     let mut features = Vec::new();
     for element in reader.document.children(root).collect::<Vec<_>>() {
         let (kind, geometry) = match reader.document.name(element) {
@@ -45,6 +51,7 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
         features.push(Feature { geometry, properties, srid, ..Feature::default() });
     }
     for (tally, what) in [
+        (reader.mixed, MIXED),
         (reader.places, "points have no latitude and longitude; left out"),
         (
             reader.times,
@@ -64,6 +71,8 @@ struct Reader<'a> {
     places: Tally,
     /// Points with more than a place.
     times: Tally,
+    /// Points with a height beside others without.
+    mixed: Tally,
 }
 
 impl Reader<'_> {
@@ -112,10 +121,8 @@ impl Reader<'_> {
             };
             let height =
                 document.find(element, &["ele"]).and_then(|ele| number(&document.text(ele)));
-            if points.is_empty() {
-                points.dimensions = Dimensions::new(height.is_some(), false);
-            }
-            points.push(DVec2::new(lon, lat), [height.unwrap_or(0.0), 0.0]);
+            let mixed = (&mut self.mixed, || document.place(element));
+            push(&mut points, DVec2::new(lon, lat), height, mixed);
         }
         points
     }

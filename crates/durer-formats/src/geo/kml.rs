@@ -3,8 +3,9 @@
 //! Styles and views are ignored; overlays and links to other files give a warning.
 
 use super::geojson::{finish_line, finish_ring};
+use super::markup::{MIXED, push};
 use super::members::{object, quoted};
-use super::{Dimensions, Feature, Geometry, MAX_DEPTH, Member, Points, Warnings};
+use super::{Feature, Geometry, MAX_DEPTH, Member, Points, Warnings};
 use crate::collada::document::Document;
 use crate::text::Tally;
 use crate::{Error, Place, Result};
@@ -45,6 +46,7 @@ struct Faults {
     others: Tally,
     models: Tally,
     coordinates: Tally,
+    mixed: Tally,
     times: Tally,
 }
 
@@ -54,6 +56,7 @@ impl Faults {
             (self.others, "overlays and links to other files are left out"),
             (self.models, "models are left out"),
             (self.coordinates, "coordinates are not numbers; left out"),
+            (self.mixed, MIXED),
             (self.times, "moments of tracks are left out; the places are kept"),
         ] {
             if tally.count > 0 {
@@ -178,7 +181,7 @@ impl Reader<'_> {
         let text = text.split(',').map(str::trim).collect::<Vec<_>>().join(",");
         let parts = text.split_ascii_whitespace().map(|tuple| tuple.split(',').collect::<Vec<_>>());
         let place = self.document.place(list);
-        points(parts, &mut self.faults.coordinates, &place)
+        points(parts, &mut self.faults, &place)
     }
 
     fn line(&mut self, element: usize, warnings: &mut Warnings) -> Points {
@@ -215,7 +218,7 @@ impl Reader<'_> {
         for _ in document.named(element, "when") {
             self.faults.times.add(|| place.clone());
         }
-        let mut line = points(parts, &mut self.faults.coordinates, &place);
+        let mut line = points(parts, &mut self.faults, &place);
         finish_line(&mut line, || place.clone(), warnings);
         line
     }
@@ -224,20 +227,17 @@ impl Reader<'_> {
 /// Returns positions from the texts of their numbers.
 fn points<'a>(
     parts: impl Iterator<Item = Vec<&'a str>>,
-    wrong: &mut Tally,
+    faults: &mut Faults,
     place: &Place,
 ) -> Points {
     let mut points = Points::default();
     for part in parts {
         let number = |i: usize| part.get(i).map(|text| number(text));
         let (Some(Some(x)), Some(Some(y)), z) = (number(0), number(1), number(2).flatten()) else {
-            wrong.add(|| place.clone());
+            faults.coordinates.add(|| place.clone());
             continue;
         };
-        if points.is_empty() {
-            points.dimensions = Dimensions::new(z.is_some(), false);
-        }
-        points.push(DVec2::new(x, y), [z.unwrap_or(0.0), 0.0]);
+        push(&mut points, DVec2::new(x, y), z, (&mut faults.mixed, || place.clone()));
     }
     points
 }

@@ -1,7 +1,34 @@
-//! The root of an XML document, by which its format is detected.
+//! Parts that the formats in XML share: the root of a document, by which its format is detected, and positions.
+
+use super::{Dimensions, Points};
+use crate::Place;
+use crate::text::Tally;
+use durer::math::DVec2;
 
 /// Number of bytes of a document that are searched for its root.
 const PROBE: usize = 16 << 10;
+
+/// Adds a position to a line; counts those that have a height where others have none, or lack one that others have,
+/// which is 0 then.
+pub fn push(
+    points: &mut Points,
+    place: DVec2,
+    height: Option<f64>,
+    (mixed, at): (&mut Tally, impl FnOnce() -> Place),
+) {
+    let dimensions = Dimensions::new(height.is_some(), false);
+    if points.is_empty() {
+        points.dimensions = dimensions;
+    } else if points.dimensions != dimensions {
+        points.lift(dimensions);
+        mixed.add(at);
+    }
+    points.push(place, [height.unwrap_or(0.0), 0.0]);
+}
+
+/// Words of a warning about positions counted by [`push`].
+pub const MIXED: &str =
+    "positions have a height where others of their line have none; heights that lack are 0";
 
 /// Returns the local name of a document's root, if it is near the beginning.
 pub fn root(bytes: &[u8]) -> Option<&str> {

@@ -73,9 +73,19 @@ struct Warnings {
     curves: crate::text::Tally,
     /// Members of geometries within others, which have no place; reported at the end.
     members: crate::text::Tally,
+    /// Values such as NaN, which JSON lacks and Python writes; reported at the end.
+    nan: crate::text::Tally,
+    /// Messages that tell how the file is read; nothing was repaired or left out.
+    notes: Vec<String>,
 }
 
 impl Warnings {
+    /// Adds a message that tells how the file is read.
+    fn note(&mut self, message: String) {
+        self.notes.push(message.clone());
+        self.push(crate::Place::Whole, message);
+    }
+
     /// Returns whether no more are kept.
     fn are_many(&self) -> bool {
         self.kept.len() >= MAX_WARNINGS
@@ -89,11 +99,14 @@ impl Warnings {
         self.more += std::mem::take(&mut other.more);
         self.curves.append(std::mem::take(&mut other.curves));
         self.members.append(std::mem::take(&mut other.members));
+        self.nan.append(std::mem::take(&mut other.nan));
+        self.notes.append(&mut other.notes);
     }
 
     /// Replaces all places by the results of a function of them.
     fn relocate(&mut self, place_of: impl Fn(crate::Place) -> crate::Place) {
-        let tallies = [&mut self.curves, &mut self.members].map(|tally| &mut tally.first);
+        let tallies =
+            [&mut self.curves, &mut self.members, &mut self.nan].map(|tally| &mut tally.first);
         let places = self.kept.iter_mut().map(|warning| &mut warning.place).chain(tallies);
         places.for_each(|place| *place = place_of(std::mem::take(place)));
     }
@@ -108,6 +121,10 @@ impl Warnings {
             (
                 std::mem::take(&mut self.members),
                 "members of geometries within collections, which GeoJSON does not define, are left out",
+            ),
+            (
+                std::mem::take(&mut self.nan),
+                "values are NaN or Infinity, which JSON does not have; they are null",
             ),
         ] {
             if tally.count > 0 {

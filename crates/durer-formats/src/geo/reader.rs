@@ -99,8 +99,7 @@ impl<R: Read> Reader<R> {
             GeoFormat::Gpx => Source::Held(gpx::read(&markup(source)?, &mut warnings)?.into_iter()),
         };
         if beside.layer.is_some() && !format.has_layers() {
-            let message = format!("{format} has one layer; --layer does nothing");
-            warnings.push(Place::Whole, message);
+            warnings.note(format!("{format} has one layer; --layer does nothing"));
         }
         Ok(Self { source, warnings, system, members, layers, begun: false })
     }
@@ -108,6 +107,9 @@ impl<R: Read> Reader<R> {
     /// Returns the coordinate system given by the file for all its coordinates, as far as it has been read: a member of
     /// GeoJSON after the features is known only at the end.
     pub fn system(&self) -> System {
+        if let Source::GeoJson(reader) = &self.source {
+            return reader.system();
+        }
         let told = super::system::of_members(self.members());
         told.unwrap_or_else(|| self.system.clone())
     }
@@ -130,8 +132,8 @@ impl<R: Read> Reader<R> {
         let layers = &self.layers;
         if !std::mem::replace(&mut self.begun, true) && layers.len() > 1 {
             let (count, names) = (layers.len(), crate::text::quote(layers.join(", ").as_bytes()));
-            let message = format!("its {count} layers, {names}, become one; --layer names one");
-            self.warnings.push(Place::Whole, message);
+            self.warnings
+                .note(format!("its {count} layers, {names}, become one; --layer names one"));
         }
         let feature = self.next_of_source()?;
         if feature.is_none() {
@@ -193,6 +195,11 @@ impl<R: Read> Reader<R> {
     /// Returns the repairs and omissions so far; at most a thousand warnings are kept.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings.kept
+    }
+
+    /// Returns whether a warning tells only how the file is read, and of nothing that was repaired or left out.
+    pub fn is_note(&self, warning: &Warning) -> bool {
+        self.warnings.notes.contains(&warning.message)
     }
 
     /// Returns the number of warnings beyond those kept.

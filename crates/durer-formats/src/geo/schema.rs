@@ -17,7 +17,8 @@ pub enum FieldKind {
     Number,
     /// Texts that are days, as 2024-12-31.
     Date,
-    /// Texts, or values of several kinds.
+    /// Texts, values of several kinds, and numbers that 64 bits do not hold: whole ones with more digits, and those
+    /// beyond all of f64.
     Text,
     /// Objects and arrays.
     Json,
@@ -46,6 +47,7 @@ impl FieldKind {
             [b't' | b'f', ..] => Self::Boolean,
             [b'n', ..] => Self::Null,
             _ if value.parse::<i64>().is_ok() => Self::Integer,
+            _ if is_beyond(value) => Self::Text,
             _ => Self::Number,
         }
     }
@@ -59,6 +61,12 @@ impl FieldKind {
             _ => Self::Text,
         }
     }
+}
+
+/// Returns whether 64 bits do not hold a number of JSON: numbers of hashes and cells with all their digits.
+fn is_beyond(value: &str) -> bool {
+    let is_whole = value.bytes().all(|b| b.is_ascii_digit() || b == b'-');
+    is_whole || value.parse::<f64>().is_ok_and(f64::is_infinite)
 }
 
 /// Returns whether a text of JSON is a day.

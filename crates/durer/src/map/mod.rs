@@ -248,6 +248,11 @@ impl<T: PaintTarget> Map<T> {
         label::draw(&mut self.target, &ground, labels, styles, fonts)
     }
 
+    /// Returns the mapping of the map's coordinates to the target's pixels.
+    pub fn screen(&self) -> &WindowToViewport {
+        &self.screen
+    }
+
     /// Returns the target, to set it up for the next layer.
     pub fn target(&mut self) -> &mut T {
         &mut self.target

@@ -42,6 +42,19 @@ impl<'a> Text<'a> {
         Ok(text.to_owned())
     }
 
+    /// Returns the value as [`Self::checked`] does, with null in place of the words NaN, Infinity and -Infinity, which
+    /// Python writes; also the number of these.
+    pub fn checked_without_nan(&self) -> Result<(String, u64)> {
+        match self.checked() {
+            Ok(text) => Ok((text, 0)),
+            Err(error) => {
+                let (bytes, count) = without_nan(self.as_bytes());
+                let text = Text::new(&bytes, self.start).checked();
+                text.ok().filter(|_| count > 0).map(|text| (text, count)).ok_or(error)
+            }
+        }
+    }
+
     /// Returns the place in the file of a byte of the piece.
     fn place_at(&self, at: usize) -> Place {
         let before = self.bytes.get(..at).unwrap_or(self.bytes);
@@ -99,6 +112,35 @@ impl<'a> Text<'a> {
         }
     }
 }
+
+/// Returns JSON with null in place of numbers that are not finite, and their number.
+fn without_nan(json: &[u8]) -> (Vec<u8>, u64) {
+    let (mut out, mut count) = (Vec::with_capacity(json.len()), 0);
+    let (mut at, mut in_string) = (0, false);
+    while let Some(&byte) = json.get(at) {
+        let rest = json.get(at..).unwrap_or_default();
+        let word = NAN.iter().find(|word| !in_string && rest.starts_with(word));
+        if let Some(word) = word {
+            out.extend(b"null");
+            (at, count) = (at + word.len(), count + 1);
+            continue;
+        }
+        out.push(byte);
+        at += 1;
+        match byte {
+            b'"' => in_string = !in_string,
+            b'\\' if in_string => {
+                out.extend(json.get(at));
+                at += 1;
+            }
+            _ => {}
+        }
+    }
+    (out, count)
+}
+
+/// Numbers that are not finite as Python writes them.
+const NAN: [&[u8]; 3] = [b"NaN", b"-Infinity", b"Infinity"];
 
 /// A walk through a piece of JSON.
 #[derive(Debug, Clone)]

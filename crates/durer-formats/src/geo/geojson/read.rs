@@ -3,6 +3,7 @@
 use super::coordinates::{Geometries, further_members};
 use super::object::{RawMember, Text, kind};
 use super::scan::{Progress, Scan};
+use crate::geo::system::{self, System};
 use crate::geo::{Feature, Member, Warnings};
 use crate::{Error, Place, Result};
 use std::io::Read;
@@ -151,7 +152,51 @@ pub struct Reader<R> {
     documents: u64,
     /// Features on lines of their own, since another document came.
     in_lines: u64,
+    systems: Systems,
 }
+
+/// Coordinate systems of the features, which members `crs` state.
+#[derive(Debug, Default)]
+struct Systems {
+    /// That of the collection, if it is stated before the features.
+    collection: Option<System>,
+    /// The common one of the features that have been read; unknown if they have several.
+    common: Option<System>,
+    /// True once a warning about an unknown one has been given.
+    is_told: bool,
+}
+
+impl Systems {
+    /// Reads a member `crs`; warns of the first one that cannot be read.
+    fn of_member(&mut self, value: &str, place: Place, warnings: &mut Warnings) -> System {
+        let found = system::of_value(value);
+        if found.is_unknown()
+            && value.trim() != "null"
+            && !std::mem::replace(&mut self.is_told, true)
+        {
+            let shown = crate::text::quote(value.as_bytes());
+            let message = format!("the member crs, {shown}, names no known coordinate system");
+            warnings.push(place, message);
+        }
+        found
+    }
+
+    /// Gives a feature the number of its system, its own or that of the collection, unless it is the one that GeoJSON
+    /// assumes.
+    fn stamp(&mut self, feature: &mut Feature, own: Option<System>) {
+        let system = own.or_else(|| self.collection.clone()).unwrap_or(System::LONLAT);
+        let is_first = self.common.is_none();
+        let is_other = *self.common.get_or_insert_with(|| system.clone()) != system;
+        if is_other {
+            self.common = Some(System::default());
+        }
+        let is_plain = system == System::LONLAT && (is_first || !is_other);
+        feature.srid = system.code.filter(|_| !is_plain);
+    }
+}
+
+/// Name of the member for the coordinate system.
+const CRS: &[u8] = system::CRS.as_bytes();
 
 /// Number of features, one per line each, after which all others must be on single lines, too, so that a truncated line
 /// is not read on to the end of the file.
@@ -170,7 +215,14 @@ impl<R: Read> Reader<R> {
             members: Vec::new(),
             documents: 0,
             in_lines: 0,
+            systems: Systems::default(),
         }
+    }
+
+    /// Returns the common coordinate system of the features, as far as they have been read.
+    pub fn system(&self) -> System {
+        let told = system::of_members(&self.members);
+        told.or_else(|| self.systems.common.clone()).unwrap_or(System::LONLAT)
     }
 
     pub fn warnings(&mut self) -> &mut Warnings {
@@ -234,6 +286,7 @@ impl<R: Read> Reader<R> {
             return Ok(false);
         }
         self.documents += 1;
+        self.systems.collection = None;
         self.collection = self.stream.here;
         self.open.clear();
         self.stream.expect(b'{', "a GeoJSON object")?;
@@ -256,7 +309,7 @@ impl<R: Read> Reader<R> {
                 self.stream.expect(b'[', "the array of features")?;
                 self.open.push((name, Piece { bytes: b"[]".to_vec(), start: self.stream.here }));
                 self.state = State::Features(false);
-                return Ok(());
+                return self.collection_system();
             }
             let value = self.stream.value("a value")?;
             self.open.push((name, value));
@@ -265,6 +318,18 @@ impl<R: Read> Reader<R> {
             }
             self.stream.expect(b',', "`,` or `}` after a member")?;
         }
+    }
+
+    /// Notes the system of a collection that states it before its features.
+    fn collection_system(&mut self) -> Result<()> {
+        self.systems.collection = match self.open.iter().find(|(name, _)| name.bytes == CRS) {
+            Some((_, value)) => {
+                let (text, warnings) = (value.text(), &mut self.geometries.warnings);
+                Some(self.systems.of_member(&text.checked()?, text.place(), warnings))
+            }
+            None => None,
+        };
+        Ok(())
     }
 
     /// Returns whether the object may still be a collection by the members read so far.
@@ -286,8 +351,12 @@ impl<R: Read> Reader<R> {
         }
         for (name, value) in &open {
             if !matches!(&name.bytes[..], b"\"type\"" | b"\"features\"" | b"\"bbox\"") {
-                let name = name.text().checked()?;
-                self.members.push(Member { name, value: value.text().checked()? });
+                let (name, text) = (name.text().checked()?, value.text());
+                let value = text.checked()?;
+                if name.as_bytes() == CRS {
+                    self.systems.of_member(&value, text.place(), &mut self.geometries.warnings);
+                }
+                self.members.push(Member { name, value });
             }
         }
         Ok(())
@@ -305,9 +374,23 @@ impl<R: Read> Reader<R> {
         self.interpret(text, &text.members()?)
     }
 
+    /// Returns a feature with the number of its system.
     fn interpret(&mut self, whole: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
+        let mut feature = self.bare(whole, members)?;
+        let further = feature.members.iter().chain(&feature.geometry_members);
+        let own = further.into_iter().find(|member| member.name.as_bytes() == CRS);
+        let warnings = &mut self.geometries.warnings;
+        let own = own.map(|own| self.systems.of_member(&own.value, whole.place(), warnings));
+        self.systems.stamp(&mut feature, own);
+        Ok(feature)
+    }
+
+    fn bare(&mut self, whole: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
         let Some(kind) = kind(members) else {
-            return Err(whole.error("a GeoJSON object needs the member \"type\", a string"));
+            let message = "a GeoJSON object needs the member \"type\", a string".to_owned();
+            let message =
+                foreign(members).map_or(message, |(what, hint)| format!("this is {what}; {hint}"));
+            return Err(whole.error(message));
         };
         match &kind[..] {
             "Feature" => self.members_of_feature(whole, members),
@@ -349,7 +432,9 @@ impl<R: Read> Reader<R> {
                 }
                 b"\"properties\"" if value.is_null() => feature.properties = None,
                 b"\"properties\"" if value.as_bytes().first() == Some(&b'{') => {
-                    feature.properties = Some(value.checked()?);
+                    let (properties, lost) = value.checked_without_nan()?;
+                    (0..lost).for_each(|_| self.geometries.warnings.nan.add(|| value.place()));
+                    feature.properties = Some(properties);
                 }
                 b"\"properties\"" => {
                     return Err(value.error("properties must be an object or null"));
@@ -368,6 +453,20 @@ impl<R: Read> Reader<R> {
             Err(whole.error("a Feature needs the member \"geometry\""))
         }
     }
+}
+
+/// Returns the name of another format of JSON that an object without a type belongs to, and advice.
+fn foreign(members: &[RawMember<'_>]) -> Option<(&'static str, &'static str)> {
+    let has = |name: &str| members.iter().any(|(known, _)| known.as_bytes() == name.as_bytes());
+    if has("\"attributes\"") || has("\"rings\"") || has("\"paths\"") || has("\"spatialReference\"")
+    {
+        return Some((
+            "JSON of ArcGIS (Esri)",
+            "query the service with f=geojson, or export GeoJSON",
+        ));
+    }
+    let is_osm = has("\"elements\"") && (has("\"osm3s\"") || has("\"generator\""));
+    is_osm.then_some(("OpenStreetMap's JSON", "convert it to GeoJSON (osmtogeojson does)"))
 }
 
 fn unsupported(place: Place, what: &str, hint: &str) -> Error {

@@ -58,8 +58,8 @@ impl Reader {
             self.check_systems()?;
             if self.layers.len() > 1 {
                 let (count, names) = (self.layers.len(), names(&self.layers));
-                let message = format!("its {count} layers, {names}, become one; --layer names one");
-                warnings.push(Place::Whole, message);
+                warnings
+                    .note(format!("its {count} layers, {names}, become one; --layer names one"));
             }
         }
         while let Some(layer) = self.layers.get(self.at) {
