@@ -27,7 +27,8 @@ Properties, ids and members that GeoJSON does not define are kept; heights and m
 interpolated at cuts. Lines keep their order and direction. Polygons are valid: valid input \
 is clipped to a window by the rectangle clip, and all else by an overlay.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer clip`.
 #[derive(Debug, Args)]

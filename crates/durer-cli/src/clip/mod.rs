@@ -56,6 +56,9 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         .transpose()?;
     let (from, mut reader) =
         crate::layer::open(&args.input, args.from, args.layer.as_deref(), &args.running.work)?;
+    if args.fields.skip_failures {
+        reader.skip_failures();
+    }
     let to = output_format(args, from)?;
     let shift = Shift::new(&args.systems);
     let fields = Fields::new(&args.fields);
@@ -93,7 +96,8 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
     let printed = if args.json { crate::report::print(&report) } else { Ok(()) };
-    ended.and(printed)
+    let whole = if reader.skipped() > 0 { Err(Failure::Partial) } else { Ok(()) };
+    ended.and(printed).and(whole)
 }
 
 /// The warning where features that are joined have different ordinates.

@@ -11,7 +11,8 @@ use durer::map::{self, Label, Map, Style};
 use durer::math::{DVec2, Rect};
 use durer::view::window::{Window, WindowToViewport};
 use durer_formats::drawing::DxfFrame;
-use durer_formats::geo::{Beside, Feature, Reader};
+use durer_formats::geo::crs::{Crs, Transform};
+use durer_formats::geo::{Beside, Feature, Reader, System};
 use durer_formats::svg::no_glyphs;
 use std::time::Instant;
 
@@ -44,6 +45,10 @@ impl Job<'_> {
             layers.push(self.features(layer)?);
         }
         self.report.read_seconds += start.elapsed().as_secs_f64();
+        if let Some(message) = self.systems.told() {
+            self.messages.warning(&self.names(), &message);
+            self.report.warnings.push(message);
+        }
         let usage = |e: durer::Error| Failure::Usage(e.to_string());
         let window = match &self.args.picture.window {
             Some(given) => {
@@ -151,12 +156,52 @@ impl Job<'_> {
             crate::layer::keep(&feature, &self.args.running.work).map_err(|e| fail(e.into()))?;
             features.push(feature);
         }
+        self.systems.add(&features, &reader.system(), &name);
         self.warn(&name, reader.warnings());
         let more = reader.further_warnings();
         if more > 0 {
             self.report.warnings.push(format!("and {more} more"));
         }
         Ok(features)
+    }
+}
+
+/// Coordinate systems of the layers.
+#[derive(Debug, Default)]
+pub(super) struct Systems {
+    /// The first one that is known, and a layer that is in it.
+    first: Option<(Crs, String)>,
+    /// A layer in another one.
+    other: Option<(Crs, String)>,
+}
+
+impl Systems {
+    /// Adds a layer with the system that its file, or else its first feature, states.
+    fn add(&mut self, features: &[Feature], told: &System, name: &str) {
+        let own = || features.first().and_then(|f| f.srid).map(System::of_code);
+        let told = if told.is_unknown() { own() } else { Some(told.clone()) };
+        let Some(crs) = told.and_then(|told| Crs::of_system(&told).ok()) else { return };
+        match &self.first {
+            None => self.first = Some((crs, name.to_owned())),
+            Some((first, _)) if !Transform::new(first, &crs).is_identity() => {
+                self.other.get_or_insert((crs, name.to_owned()));
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// Returns a warning about layers of several systems.
+    fn told(&self) -> Option<String> {
+        let ((first, name), (other, its)) = (self.first.as_ref()?, self.other.as_ref()?);
+        let shown = |crs: &Crs| match crs.code() {
+            Some(code) => format!("EPSG:{code}"),
+            None => "a system without a number".to_owned(),
+        };
+        let [first, other] = [shown(first), shown(other)];
+        Some(format!(
+            "the layers are in several coordinate systems, {name} in {first} and {its} in {other}, and are drawn as they \
+             are; durer clip --to-crs converts them"
+        ))
     }
 }
 

@@ -188,6 +188,8 @@ struct Job<'a> {
     report: &'a mut Report,
     /// The place of the sheet in a file for CAD.
     frame: DxfFrame,
+    /// The coordinate systems of the layers.
+    systems: map::Systems,
 }
 
 /// A file that has been read.
@@ -210,7 +212,8 @@ struct Unpacked {
 
 impl<'a> Job<'a> {
     fn new(args: &'a DrawArgs, messages: &'a Messages, report: &'a mut Report) -> Self {
-        Self { args, messages, report, frame: DxfFrame::default() }
+        let (frame, systems) = Default::default();
+        Self { args, messages, report, frame, systems }
     }
 }
 

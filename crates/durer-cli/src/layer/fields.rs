@@ -3,6 +3,7 @@
 use clap::Args;
 use durer_formats::geo::{Feature, Member};
 use serde_json::Value;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 /// Options for features and their fields.
@@ -12,8 +13,9 @@ pub struct FieldArgs {
     /// Keep features whose field satisfies a condition: FIELD=VALUE; also !=, <, <=, >, >= and ~
     /// (contains, ignoring case)
     ///
-    /// If there are several, all must hold. Numbers are compared as numbers, texts by their characters. A missing
-    /// field is `null`, which only FIELD=null accepts. `id` is also the id of the feature.
+    /// If there are several, all must hold. Numbers are compared as numbers, texts by their characters; <, <=, > and >=
+    /// compare as numbers if both are. A VALUE in quotes is a text. A missing field is `null`, which only FIELD=null
+    /// accepts. `id` is also the id of the feature.
     #[arg(long = "where", value_name = "FIELD=VALUE", value_parser = condition)]
     pub conditions: Vec<Condition>,
     /// Keep these fields only, in this order
@@ -22,6 +24,12 @@ pub struct FieldArgs {
     /// Rename a field; --where and --select use the old names
     #[arg(long, value_name = "OLD=NEW", value_parser = rename, value_delimiter = ',')]
     pub rename: Vec<(String, String)>,
+    /// Leave out features that cannot be read, with a warning that counts them and exit code 3
+    ///
+    /// Of GeoJSON, CSV, WKT with a geometry per line, hexadecimal WKB and Shapefiles; other formats, and text that is
+    /// not JSON, show no end of a broken feature.
+    #[arg(long)]
+    pub skip_failures: bool,
 }
 
 impl FieldArgs {
@@ -37,6 +45,8 @@ pub struct Condition {
     field: String,
     test: Test,
     value: String,
+    /// True if the value is a text, whatever it looks like.
+    is_quoted: bool,
 }
 
 /// Comparison of a field with a value.
@@ -52,8 +62,10 @@ enum Test {
 }
 
 /// Tests by their signs, longer ones before their prefixes.
-const TESTS: [(&str, Test); 7] = [
+const TESTS: [(&str, Test); 9] = [
     ("!=", Test::Other),
+    ("<>", Test::Other),
+    ("==", Test::Equal),
     ("<=", Test::AtMost),
     (">=", Test::AtLeast),
     ("=", Test::Equal),
@@ -68,8 +80,23 @@ fn condition(text: &str) -> Result<Condition, String> {
     let Some((at, sign, test)) = first.filter(|(at, ..)| *at > 0) else {
         return Err("a condition is FIELD=VALUE, or with !=, <, <=, >, >= or ~".to_owned());
     };
-    let (field, value) = (text[..at].trim().to_owned(), text[at + sign.len()..].trim().to_owned());
-    Ok(Condition { field, test, value })
+    let (field, given) = (text[..at].trim().to_owned(), text[at + sign.len()..].trim());
+    let quoted =
+        ['\'', '"'].iter().find_map(|quote| given.strip_prefix(*quote)?.strip_suffix(*quote));
+    if quoted.is_none() && joins_conditions(given) {
+        return Err("one condition for each --where; all of them must hold".to_owned());
+    }
+    let (value, is_quoted) = (quoted.unwrap_or(given).to_owned(), quoted.is_some());
+    Ok(Condition { field, test, value, is_quoted })
+}
+
+/// Returns whether a value is followed by another condition, as in `3 and b=4`.
+fn joins_conditions(value: &str) -> bool {
+    let words = [" and ", " or ", " && ", " || "];
+    let lower = value.to_ascii_lowercase();
+    let rest =
+        words.iter().filter_map(|word| Some(&value[lower.find(word)? + word.len()..])).next();
+    rest.is_some_and(|rest| TESTS.iter().any(|(sign, _)| rest.contains(sign)))
 }
 
 fn rename(text: &str) -> Result<(String, String), String> {
@@ -85,14 +112,18 @@ impl Condition {
     /// Returns whether a value passes the test; `None` if there is no such field.
     fn holds(&self, value: Option<&Value>) -> bool {
         let text = match value {
-            None | Some(Value::Null) => return self.test == Test::Equal && self.value == "null",
+            None | Some(Value::Null) => {
+                return self.test == Test::Equal && self.value == "null" && !self.is_quoted;
+            }
             Some(Value::String(text)) => text.clone(),
             Some(other) => other.to_string(),
         };
+        let orders = matches!(self.test, Test::Less | Test::AtMost | Test::More | Test::AtLeast);
+        let as_numbers = || numbers(&text, &self.value).filter(|_| !self.is_quoted);
         let order = match value {
-            Some(Value::Number(number)) => {
-                let given = self.value.parse::<f64>().ok();
-                number.as_f64().zip(given).and_then(|(own, given)| own.partial_cmp(&given))
+            Some(Value::Number(_)) if !self.is_quoted => as_numbers(),
+            Some(Value::String(_)) if orders => {
+                as_numbers().or(Some(text.as_str().cmp(&self.value)))
             }
             _ => Some(text.as_str().cmp(&self.value)),
         };
@@ -108,6 +139,15 @@ impl Condition {
     }
 }
 
+/// Compares two texts as numbers, whole ones with all their digits; `None` if one is not a number.
+fn numbers(own: &str, given: &str) -> Option<Ordering> {
+    let [own, given] = [own, given].map(str::trim);
+    match (own.parse::<i128>(), given.parse::<i128>()) {
+        (Ok(own), Ok(given)) => Some(own.cmp(&given)),
+        _ => own.parse::<f64>().ok()?.partial_cmp(&given.parse::<f64>().ok()?),
+    }
+}
+
 /// Number of fields that a message lists when a name is unknown.
 const LISTED: usize = 12;
 
@@ -120,6 +160,8 @@ pub struct Fields {
     /// Some of the names that there are.
     known: BTreeSet<String>,
     any: bool,
+    /// A name that several fields have after --rename.
+    doubled: Option<String>,
 }
 
 impl Fields {
@@ -133,7 +175,7 @@ impl Fields {
                 missing.push(name.clone());
             }
         }
-        Self { args: args.clone(), missing, known: BTreeSet::new(), any: false }
+        Self { args: args.clone(), missing, known: BTreeSet::new(), any: false, doubled: None }
     }
 
     /// Returns whether a feature is kept, which then has the fields that are requested.
@@ -153,6 +195,12 @@ impl Fields {
         }
         if !self.args.select.is_empty() || !self.args.rename.is_empty() {
             let chosen = self.chosen(fields);
+            if self.doubled.is_none() && !self.args.rename.is_empty() {
+                let is_double =
+                    |(i, f): &(usize, &Member)| chosen[..*i].iter().any(|g| g.name == f.name);
+                let double = chosen.iter().enumerate().find(is_double);
+                self.doubled = double.map(|(_, field)| field.key());
+            }
             feature.set_fields(&chosen);
         }
         true
@@ -184,8 +232,18 @@ impl Fields {
         self.known.extend(keys.into_iter().take(room));
     }
 
-    /// Returns a warning at the end: fields that no feature has.
+    /// Returns a warning at the end: fields that no feature has, and names that several fields have.
     pub fn told(&self) -> Option<String> {
+        let doubled = self.doubled.as_ref().map(|name| {
+            format!(
+                "after --rename, features have several fields {name}; programs read one of them"
+            )
+        });
+        let all: Vec<String> = self.unknown().into_iter().chain(doubled).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+
+    fn unknown(&self) -> Option<String> {
         if self.missing.is_empty() || !self.any {
             return None;
         }
@@ -205,7 +263,8 @@ mod tests {
 
     #[test]
     fn conditions_compare_numbers_and_texts() {
-        let given = r#"{"n":10,"t":"Bern","b":true,"e":null,"o":{"x":1}}"#;
+        let given =
+            r#"{"n":10,"t":"Bern","b":true,"e":null,"o":{"x":1},"s":"07","big":9007199254740993}"#;
         for (text, expected) in [
             ("n=10", true),
             ("n=1e1", true),
@@ -227,13 +286,35 @@ mod tests {
             ("e!=null", false),
             ("x=null", true),
             ("x!=1", false),
-            ("o~\"x\"", true),
+            ("o~x", true),
+            ("n==10", true),
+            ("n<>10", false),
+            ("n='10'", true),
+            ("t='Bern'", true),
+            ("t=\"Bern\"", true),
+            ("e='null'", false),
+            ("s=7", false),
+            ("s=07", true),
+            ("s>6", true),
+            ("s<10", true),
+            ("s<'10'", true),
+            ("s>'1'", false),
+            ("t>5", true),
+            ("big=9007199254740993", true),
+            ("big=9007199254740992", false),
+            ("big>9007199254740992", true),
         ] {
             let conditions = vec![condition(text).expect(text)];
             let mut fields = Fields::new(&FieldArgs { conditions, ..FieldArgs::default() });
             assert_eq!(fields.apply(&mut feature(given)), expected, "{text}");
         }
         assert!(condition("=3").is_err() && condition("abc").is_err());
+        for several in ["a=3 and b=4", "a>3 AND b<4", "a=1 || b=2"] {
+            assert!(condition(several).expect_err(several).contains("each --where"), "{several}");
+        }
+        assert!(
+            condition("a=Bosnia and Herzegovina").is_ok() && condition("a='b and c=d'").is_ok()
+        );
         assert_eq!(condition("a<=b").expect("a condition").test, Test::AtMost);
         assert_eq!(condition("a=b<c").expect("a condition").value, "b<c");
     }
@@ -250,5 +331,9 @@ mod tests {
         assert!(fields.apply(&mut given));
         assert_eq!(given.properties.as_deref(), Some(r#"{"c":"x","ä":1.50}"#));
         assert_eq!(fields.told().as_deref(), Some("no feature has the field z; there are a, b, c"));
+        let rename = vec![("a".to_owned(), "b".to_owned())];
+        let mut fields = Fields::new(&FieldArgs { rename, ..FieldArgs::default() });
+        assert!(fields.apply(&mut feature(r#"{"a":1,"b":2}"#)));
+        assert!(fields.told().is_some_and(|told| told.contains("several fields b")));
     }
 }

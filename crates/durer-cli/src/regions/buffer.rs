@@ -21,7 +21,8 @@ Examples:
 The distance is in units of the coordinates: convert longitude and latitude to metres first, with durer clip --to-crs. \
 A negative distance shrinks polygons. Heights and measures are not kept.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer buffer`.
 #[derive(Debug, Args)]

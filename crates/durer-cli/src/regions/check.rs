@@ -99,6 +99,8 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let fail = |what: String| Failure::Data(format!("{name}: {what}"));
     let chosen = args.layer.as_deref();
     let (_, mut reader) = open(&args.input, args.from, chosen, &args.running.work)?;
+    // A broken feature is a fault like others.
+    reader.skip_failures();
     let version = env!("CARGO_PKG_VERSION");
     let mut report = Report { version, input: name.clone(), ..Report::default() };
     let (mut layer, mut numbers): (Vec<Shapes>, Vec<u64>) = (Vec::new(), Vec::new());
@@ -138,7 +140,8 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
     // Features mended or left out during reading count as faults, too.
     let mended = reader.warnings().iter().filter(|warning| !reader.is_note(warning)).count();
-    let mended = mended as u64 + reader.further_warnings();
+    let skipped = reader.skipped().saturating_sub(1);
+    let mended = mended as u64 + reader.further_warnings() + skipped;
     if mended > 0 {
         report.counts.insert("reading", mended);
     }

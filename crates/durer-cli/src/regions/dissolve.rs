@@ -21,7 +21,8 @@ Features with equal values of all fields become one, in the order of their first
 become one. The result keeps these fields, and `count` is the number of its features. Polygons are joined: borders \
 between them vanish, and overlaps count once. Lines and points are collected unchanged.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer dissolve`.
 #[derive(Debug, Args)]

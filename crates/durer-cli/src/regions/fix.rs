@@ -19,7 +19,8 @@ Valid features are not changed. Other polygons are replaced by valid ones that e
 keep heights and measures: crossing edges are cut, spikes and doubled rings vanish. durer check reports what is wrong \
 and where.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer fix`.
 #[derive(Debug, Args)]

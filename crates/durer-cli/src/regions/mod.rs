@@ -105,8 +105,11 @@ impl<'a> Job<'a> {
             return Err(Failure::Usage(message.to_owned()));
         }
         let messages = Messages::new(&args.running, 1);
-        let (from, reader) =
+        let (from, mut reader) =
             layer::open(&args.input, args.from, args.layer.as_deref(), &args.running.work)?;
+        if args.fields.skip_failures {
+            reader.skip_failures();
+        }
         let to = named_format(&args.output, args.to, Some(from))?;
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
@@ -226,6 +229,8 @@ impl<'a> Job<'a> {
         drop(self.messages);
         self.report.total_seconds = self.start.elapsed().as_secs_f64();
         self.report.peak_memory_bytes = crate::report::peak_memory();
-        if args.json { crate::report::print(&self.report) } else { Ok(()) }
+        let printed = if args.json { crate::report::print(&self.report) } else { Ok(()) };
+        let whole = if self.reader.skipped() > 0 { Err(Failure::Partial) } else { Ok(()) };
+        printed.and(whole)
     }
 }

@@ -18,7 +18,8 @@ Borders that neighbours share point by point are simplified once and stay shared
 before do not cross afterwards, and every ring keeps at least three points. Properties, ids and members are kept, and \
 so are the heights and measures of the remaining points.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer simplify`.
 #[derive(Debug, Args)]

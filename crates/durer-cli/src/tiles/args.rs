@@ -20,7 +20,8 @@ Examples:
 Each file becomes a layer, and so does each layer of a GeoPackage or TopoJSON file. Without --zoom, the levels follow from the distances between vertices and features. The features of a layer are simplified together, so that neighbours keep their borders; the \
 highest level keeps all points. Polygons are valid. Geometry beyond 180 degrees is moved to the other side.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer tiles`.
 #[derive(Debug, Args)]
@@ -86,9 +87,9 @@ pub struct TilesArgs {
     /// Credit to show beside the map, as HTML
     #[arg(long, value_name = "HTML", help_heading = "Layers")]
     pub attribution: Option<String>,
-    /// Coordinate system of the input
-    #[arg(long, value_name = "SYSTEM", default_value = "lonlat", help_heading = "Reading")]
-    pub coordinates: TileCoordinates,
+    /// Coordinate system of the input [default: that of the file, which is converted; lonlat if it states none]
+    #[arg(long, value_name = "SYSTEM", help_heading = "Reading")]
+    pub coordinates: Option<TileCoordinates>,
     /// Lines and borders never extend more than half around the world: an edge of more than 180 degrees goes the other
     /// way, across the date line
     #[arg(long, help_heading = "Reading")]

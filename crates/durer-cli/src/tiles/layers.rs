@@ -3,15 +3,18 @@
 use super::args::TilesArgs;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{Fields, keep, open, packed_names, words};
+use crate::layer::{Fields, Shift, SystemArgs, keep, open, packed_names, words};
 use crate::messages::Messages;
 use crate::names;
+use crate::options::TileCoordinates;
 use crate::places::is_stream;
 use durer::clip::tiles::{self, Placed};
 use durer::parallel;
-use durer_formats::geo::{Feature, GeoFormat};
+use durer_formats::geo::crs::Crs;
+use durer_formats::geo::{Feature, GeoFormat, System};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
 use durer_formats::told::counted;
+use durer_formats::{Place, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -45,6 +48,8 @@ pub struct Layers {
     pub read: u64,
     /// Repairs and omissions.
     pub warnings: Vec<String>,
+    /// Features that cannot be read and are left out.
+    pub skipped: u64,
 }
 
 /// Number of occurrences, and the first of them.
@@ -148,6 +153,9 @@ fn read_file(
     let shown = display_name(path);
     let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
     let (from, mut reader) = open(path, args.from, part.choice().as_deref(), &args.running.work)?;
+    if args.fields.skip_failures {
+        reader.skip_failures();
+    }
     let layers = reader.layers();
     if layers.len() > 1 && !is_stream(path) {
         drop(reader);
@@ -165,12 +173,19 @@ fn read_file(
         return Err(Failure::Data(format!("{shown}: an SVG has no places on the earth")));
     }
     let (mut doubts, before, mut kept) = (Doubts::default(), all.read, 0);
+    let mut placing = Placing::new(args);
     loop {
         let mut features = Vec::new();
         while features.len() < BATCH {
             let Some(mut feature) = reader.next_feature().map_err(fail)? else { break };
             all.read += 1;
             if fields.apply(&mut feature) {
+                placing.convert(&mut feature, || reader.system()).map_err(|why| {
+                    Failure::Data(format!(
+                        "{shown}: {why}; durer clip --from-crs --to-crs EPSG:4326 converts it first, or --coordinates \
+                         says what its coordinates are"
+                    ))
+                })?;
                 keep(&feature, &args.running.work).map_err(|e| fail(e.into()))?;
                 features.push((all.read - before, feature));
             }
@@ -179,7 +194,7 @@ fn read_file(
             break;
         }
         kept += features.len();
-        let coordinates = args.coordinates.into();
+        let coordinates = placing.coordinates;
         let place = |(_, f): &(u64, Feature)| match &f.geometry {
             Some(geometry) => tiles::place(geometry, coordinates, args.short_way),
             None => Placed::default(),
@@ -201,7 +216,10 @@ fn read_file(
             .filter(|warning| reader.is_note(warning))
             .for_each(|w| w.message.clone_from(&note));
     }
+    let lost = placing.shift.as_ref().and_then(Shift::told);
+    told.extend(lost.map(|message| Warning { place: Place::Whole, message }));
     messages.warnings(&shown, &told);
+    all.skipped += reader.skipped();
     all.warnings.extend(told.iter().map(|warning| format!("{shown}: {warning}")));
     let none = match (all.read == before, kept) {
         (true, _) => Some("there is no feature in it".to_owned()),
@@ -216,6 +234,64 @@ fn read_file(
     }
     Ok(())
 }
+
+/// Way of a file's coordinates to those of tiles.
+struct Placing {
+    coordinates: tiles::Coordinates,
+    /// The conversion to longitudes and latitudes, unless an option says what the coordinates are.
+    shift: Option<Shift>,
+    /// The system that the file states, from the first feature on.
+    told: Option<System>,
+}
+
+impl Placing {
+    fn new(args: &TilesArgs) -> Self {
+        let lonlat = Crs::of_system(&System::LONLAT).ok();
+        let systems = SystemArgs { from_crs: None, to_crs: lonlat };
+        let shift = Shift::new(&systems).filter(|_| args.coordinates.is_none());
+        let coordinates = args.coordinates.unwrap_or(TileCoordinates::Lonlat).into();
+        Self { coordinates, shift, told: None }
+    }
+
+    /// Converts a feature to longitudes and latitudes if its file or itself states another system.
+    ///
+    /// # Errors
+    /// The reason why the system is not known.
+    fn convert(
+        &mut self,
+        feature: &mut Feature,
+        system: impl Fn() -> System,
+    ) -> Result<(), String> {
+        let Some(shift) = &mut self.shift else { return Ok(()) };
+        let told = self.told.get_or_insert_with(|| {
+            let told = system();
+            shift.begin(told.clone());
+            if told.code == Some(MERCATOR) {
+                self.coordinates = tiles::Coordinates::Mercator;
+            }
+            told
+        });
+        let is_other = feature.srid.is_some() && feature.srid != told.code;
+        let is_direct = *told == System::LONLAT || told.code == Some(MERCATOR) || told.is_unknown();
+        if is_direct && !is_other {
+            return Ok(());
+        }
+        let own = if is_other { feature.srid.map(System::of_code) } else { None };
+        if let Err(why) = Crs::of_system(own.as_ref().unwrap_or(told)) {
+            return Err(why);
+        }
+        if is_other && self.coordinates == tiles::Coordinates::Mercator {
+            return Err("its features are in several coordinate systems".to_owned());
+        }
+        if !shift.apply(feature).map_err(|failure| failure.to_string())? {
+            feature.geometry = None;
+        }
+        Ok(())
+    }
+}
+
+/// Number of Web Mercator.
+const MERCATOR: i32 = 3857;
 
 /// Prints a warning now and adds it to the report.
 fn tell(message: String, name: &str, messages: &Messages, warnings: &mut Vec<String>) {

@@ -149,7 +149,8 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
         peak_memory_bytes: crate::report::peak_memory(),
     };
     let printed = if args.json { crate::report::print(&report) } else { Ok(()) };
-    ended.and(printed)
+    let whole = if all.skipped > 0 { Err(Failure::Partial) } else { Ok(()) };
+    ended.and(printed).and(whole)
 }
 
 /// Refuses too many tiles before one is made.

@@ -130,7 +130,12 @@ fn coordinates_are_brought_to_another_system() {
     assert!(text(&folder, "o.geojson").contains("urn:ogc:def:crs:EPSG::3035"));
     // The reader honours it.
     folder.must("clip o.geojson --to-crs EPSG:4326 -o back.geojson");
-    assert!(!text(&folder, "back.geojson").contains("crs"));
+    let back = text(&folder, "back.geojson");
+    let first = back.split("coordinates\":[[[").nth(1).expect("an area").split(']').next();
+    let numbers: Vec<f64> =
+        first.expect("a position").split(',').map(|n| n.parse().expect("a number")).collect();
+    let there = text(&folder, "areas.geojson");
+    assert!(!back.contains("crs") && numbers[0].abs() <= 180.0, "{there} {back}");
     folder.must("clip areas.geojson --to-crs EPSG:3857 -o o.fgb");
     assert!(said(&folder, "info o.fgb").contains("EPSG:3857"));
     folder
@@ -252,4 +257,71 @@ fn what_this_build_lacks_is_named_with_its_feature() {
     folder.write("b.parquet", "PAR1PAR1");
     folder.run("clip b.parquet -o b.geojson").fails(1, "geoparquet");
     assert_eq!(folder.names(), ["a.wkt", "b.parquet"]);
+}
+
+/// Point on the Brandenburg Gate in Web Mercator and in degrees, by pyproj.
+const MERCATOR: (&str, f64, f64) = ("[1489000,6894000.5]", 13.375914580539675, 52.51617737674441);
+
+#[test]
+fn systems_that_geojson_states_are_converted_from() {
+    let folder = Folder::new();
+    let crs = |code: u32| {
+        format!(r#""crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::{code}"}}}}"#)
+    };
+    let (place, x, y) = MERCATOR;
+    let point = format!(r#"{{"type":"Point","coordinates":{place}}}"#);
+    let feature = format!(r#"{{"type":"Feature","properties":{{}},"geometry":{point}}}"#);
+    let own = point.replace("\"coordinates\"", &format!("{},\"coordinates\"", crs(3857)));
+    let of_all =
+        |crs: &str| format!(r#"{{"type":"FeatureCollection",{crs},"features":[{feature}]}}"#);
+    folder.write("all.geojson", of_all(&crs(3857)));
+    folder.write("own.geojson", &own);
+    for name in ["all", "own"] {
+        folder.must(&format!("clip {name}.geojson --to-crs EPSG:4326 -o o.geojsonl"));
+        let told = text(&folder, "o.geojsonl");
+        let numbers = told.split("coordinates\":[").nth(1).and_then(|t| t.split(']').next());
+        let numbers: Vec<f64> =
+            numbers.expect("a point").split(',').map(|n| n.parse().expect("a number")).collect();
+        assert!((numbers[0] - x).abs() < 1e-9 && (numbers[1] - y).abs() < 1e-9, "{told}");
+        assert!(!told.contains("crs"), "{told}");
+        folder.must(&format!("clip {name}.geojson -o o.wkt"));
+        assert_eq!(text(&folder, "o.wkt"), "SRID=3857;POINT (1489000 6894000.5)\n");
+    }
+    // Tiles have their own coordinates.
+    folder.must("clip all.geojson --tiles 3 -o o.geojsonl");
+    assert!(text(&folder, "o.geojsonl").contains("\"tile\":\"3/4/2\""));
+    // A system that comes after the features is too late, unless nothing depends on it.
+    let late = format!(r#"{{"type":"FeatureCollection","features":[{feature}],{}}}"#, crs(3857));
+    folder.write("late.geojson", &late);
+    for line in ["--to-crs EPSG:4326 -o l.geojson", "-o l.shp", "--tiles 3 -o l.geojsonl"] {
+        let ended = folder.run(&format!("clip late.geojson {line}"));
+        ended.fails(1, "the member crs follows the features");
+        assert!(ended.err.contains("--from-crs EPSG:3857"), "{}", ended.err);
+    }
+    assert!(!folder.path("l.shp").exists() && !folder.path("l.geojson").exists());
+    folder.must("clip late.geojson --from-crs 3857 --to-crs EPSG:4326 -o l.geojson");
+    folder.must("clip late.geojson --window 0,0,9e6,9e6 -o l.geojson");
+    assert!(text(&folder, "l.geojson").contains("EPSG::3857"));
+    // One that is not known is not guessed.
+    folder.write("mine.geojson", of_all(r#""crs":{"type":"name","properties":{"name":"mine"}}"#));
+    folder.run("clip mine.geojson --to-crs EPSG:4326 -o o.geojson").fails(2, "--from-crs sets");
+    let ended = folder.must("clip mine.geojson -o o.wkt");
+    assert!(ended.err.contains("names no known coordinate system"), "{}", ended.err);
+    // The mask is not converted.
+    folder.write("mask.geojson", r#"{"type":"Polygon","coordinates":[[[0,0],[9,0],[9,9],[0,0]]]}"#);
+    let ended = folder.must("clip all.geojson --by mask.geojson -o o.geojson");
+    assert!(ended.err.contains("SRID 4326 and not SRID 3857"), "{}", ended.err);
+    let ended = folder.must("clip mask.geojson --by mask.geojson -o o.geojson");
+    assert_eq!(ended.err, "", "both are longitudes and latitudes");
+}
+
+#[test]
+fn metres_as_degrees_are_told() {
+    let folder = Folder::new();
+    folder.write("far.csv", "x,y\n500000,5400000\n1,2\n");
+    let ended = folder.must("clip far.csv -o o.geojson");
+    assert!(ended.err.contains("1 feature has coordinates beyond 90 degrees"), "{}", ended.err);
+    assert_eq!(folder.must("clip far.csv -o o.wkt").err, "");
+    let ended = folder.must("clip far.csv --from-crs EPSG:25832 --where x=1 -o o.geojson");
+    assert!(!ended.err.contains("beyond 90 degrees"), "{}", ended.err);
 }

@@ -275,7 +275,7 @@ fn maps_become_polylines_and_hatches_for_cad() {
     let style =
         "--stroke #ff8000 --label name ways.geojson --fill none --stroke #0000ff80 --dashes 4,2,1";
     folder.must(&format!(
-        "draw map.geojson {style} -o a.dxf --size 100x100 --window 0,0,100,100 --background #def"
+        "draw map.geojson {style} -o a.dxf --size 100x100 --window 0,0,100,100 --background #def --dxf-units mm"
     ));
     let dxf = String::from_utf8(folder.read("a.dxf")).expect("ASCII");
     let all = entities(&dxf);
@@ -328,4 +328,60 @@ fn maps_become_polylines_and_hatches_for_cad() {
     folder.must("draw straße.geojson -o a.dxf");
     let dxf = String::from_utf8(folder.read("a.dxf")).expect("ASCII");
     assert!(dxf.contains("\n  8\nstra\\U+00DFe\n"), "the name of the layer is escaped");
+}
+
+#[test]
+fn maps_for_cad_have_the_coordinates_of_the_map() {
+    let folder = Folder::new();
+    let ring = "[[500000.25,5400000.5],[500010,5400000.5],[500010,5400020],[500000.25,5400000.5]]";
+    folder.write(
+        "utm.geojson",
+        format!(
+            r#"{{"type":"FeatureCollection","features":[
+            {{"type":"Feature","properties":{{"n":"A"}},"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}},
+            {{"type":"Feature","properties":{{}},"geometry":{{"type":"Point","coordinates":[500005,5400015.125]}}}}]}}"#
+        ),
+    );
+    folder.must("draw utm.geojson -o a.dxf --size 200x400 --dashes 4,2");
+    let dxf = String::from_utf8(folder.read("a.dxf")).expect("ASCII");
+    let all = entities(&dxf);
+    let line = all.iter().find(|e| e[0].1 == "LWPOLYLINE").expect("a border");
+    let values = |code: i32| {
+        let of_code = line.iter().filter(|t| t.0 == code);
+        of_code.map(|t| t.1.parse::<f64>().expect("a number")).collect::<Vec<_>>()
+    };
+    let near = |found: Vec<f64>, expected: [f64; 3]| {
+        let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(found.len() == 3 && apart.fold(0.0, f64::max) < 1e-8, "{found:?}");
+    };
+    near(values(10), [500_000.25, 500_010.0, 500_010.0]);
+    near(values(20), [5_400_000.5, 5_400_000.5, 5_400_020.0]);
+    // Unknown units; dashes keep their size on the sheet, where the longer side of the window is 400 pixels.
+    let after = |name: &str| {
+        let at = dxf.find(name).expect("a variable");
+        dxf[at..].lines().nth(2).expect("a value").trim().parse::<f64>().expect("a number")
+    };
+    assert_eq!(after("$INSUNITS"), 0.0);
+    let (lower, upper) = (after("$EXTMIN"), after("$EXTMAX"));
+    assert!(lower < 500_000.25 && upper > 500_010.0, "{lower} {upper}");
+    let sheet = 200.0 * 25.4 / 96.0;
+    assert!((after("$LTSCALE") - (upper - lower) / sheet).abs() < 1e-9);
+    folder.write("a.svg", SVG);
+    folder.run("draw a.svg -o b.dxf --dxf-units map").fails(2, "an SVG has no map's coordinates");
+    folder.run("draw utm.geojson -o b.svg --dxf-units map").fails(2, "it is for .dxf files");
+}
+
+#[test]
+fn layers_in_several_systems_are_told() {
+    let folder = Folder::new();
+    folder.write("a.geojson", r#"{"type":"Point","coordinates":[9,48]}"#);
+    folder.write("b.wkt", "SRID=25832;POINT (500000 5400000)");
+    let ended = folder.must("draw a.geojson b.wkt -o a.png");
+    assert!(
+        ended.err.contains("a.geojson in EPSG:4326 and b.wkt in EPSG:25832, and are drawn as"),
+        "{}",
+        ended.err
+    );
+    folder.write("c.wkt", "SRID=4258;POINT (9 48)\nPOINT (8 47)");
+    assert_eq!(folder.must("draw a.geojson c.wkt -o a.png").err, "");
 }

@@ -147,3 +147,23 @@ fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
     assert!(!again.err.contains("points that"), "{}", again.err);
     assert_eq!(folder.read("out.geojson"), folder.read("again.geojson"));
 }
+
+#[test]
+fn broken_features_are_faults_or_left_out() {
+    let folder = Folder::new();
+    folder.write("a.csv", "id,WKT\n1,POINT (1 2)\n2,POINT (1\n3,POINT (3\n4,POINT (5 6)\n");
+    folder.run("clip a.csv -o o.geojson").fails(1, "a.csv: line 3: ");
+    assert!(!folder.path("o.geojson").exists());
+    let told = "a.csv: line 3: 2 features cannot be read and are left out; of this one: ";
+    for command in ["clip a.csv", "fix a.csv", "tiles a.csv --zoom 0"] {
+        let out = if command.starts_with("tiles") { "o.pmtiles" } else { "o.geojson" };
+        let ended = folder.run(&format!("{command} -o {out} --skip-failures"));
+        ended.fails(3, told);
+        assert!(folder.path(out).exists(), "{command}");
+    }
+    let text = String::from_utf8(folder.read("o.geojson")).expect("text");
+    assert_eq!(text.matches("\"Feature\"").count(), 2, "{text}");
+    let checked = folder.run("check a.csv --json");
+    checked.fails(1, "2 reading");
+    assert_eq!(checked.json()["counts"]["reading"], 2);
+}

@@ -8,7 +8,6 @@
 use super::members::{members, object, quoted};
 use super::{Feature, Geometry, Member, Points, Warnings, wkb, wkt};
 use crate::text::{Tally, name};
-use crate::told::counted;
 use crate::{Error, Place, Result};
 use durer::math::DVec2;
 use std::borrow::Cow;
@@ -260,22 +259,17 @@ impl Reader {
     }
 
     fn tell(&mut self, warnings: &mut Warnings) {
-        for (tally, one, several) in [
-            (
-                std::mem::take(&mut self.ragged),
-                "row has more or fewer values than there are columns",
-                "rows have more or fewer values than there are columns",
-            ),
-            (
-                std::mem::take(&mut self.nowhere),
-                "row has no numbers in the columns of its place; it has no geometry",
-                "rows have no numbers in the columns of their place; they have no geometry",
-            ),
-        ] {
-            if tally.count > 0 {
-                warnings.push(tally.first, counted(tally.count, one, several));
-            }
-        }
+        let [ragged, nowhere] = [&mut self.ragged, &mut self.nowhere].map(std::mem::take);
+        warnings.add_counted(
+            ragged,
+            "row has more or fewer values than there are columns",
+            "rows have more or fewer values than there are columns",
+        );
+        warnings.add_counted(
+            nowhere,
+            "row has no numbers in the columns of its place; it has no geometry",
+            "rows have no numbers in the columns of their place; they have no geometry",
+        );
     }
 
     /// Returns all values except the geometry's.

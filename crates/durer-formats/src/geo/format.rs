@@ -149,7 +149,7 @@ impl GeoFormat {
 
     /// Returns whether it has a place for the number of the coordinate system.
     pub fn tells_system(self) -> bool {
-        matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
+        matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Csv)
             || matches!(self, Self::Shapefile | Self::FlatGeobuf)
             || matches!(self, Self::GeoPackage | Self::GeoParquet)
     }

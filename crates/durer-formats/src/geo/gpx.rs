@@ -50,18 +50,17 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
         let (geometry, srid) = (Some(geometry), Some(4326));
         features.push(Feature { geometry, properties, srid, ..Feature::default() });
     }
-    for (tally, what) in [
-        (reader.mixed, MIXED),
-        (reader.places, "points have no latitude and longitude; left out"),
-        (
-            reader.times,
-            "points of routes and tracks have times or other values; their places are kept",
-        ),
-    ] {
-        if tally.count > 0 {
-            warnings.push(tally.first, format!("{} {what}", tally.count));
-        }
-    }
+    warnings.add_counted(reader.mixed, MIXED[0], MIXED[1]);
+    warnings.add_counted(
+        reader.places,
+        "point has no latitude and longitude; left out",
+        "points have no latitude and longitude; left out",
+    );
+    warnings.add_counted(
+        reader.times,
+        "point of a route or track has a time or other values; its place is kept",
+        "points of routes and tracks have times or other values; their places are kept",
+    );
     Ok(features)
 }
 

@@ -52,16 +52,29 @@ struct Faults {
 
 impl Faults {
     fn tell(self, warnings: &mut Warnings) {
-        for (tally, what) in [
-            (self.others, "overlays and links to other files are left out"),
-            (self.models, "models are left out"),
-            (self.coordinates, "coordinates are not numbers; left out"),
+        for (tally, [one, several]) in [
+            (
+                self.others,
+                [
+                    "overlay or link to another file is left out",
+                    "overlays and links to other files are left out",
+                ],
+            ),
+            (self.models, ["model is left out", "models are left out"]),
+            (
+                self.coordinates,
+                ["coordinate is not a number; left out", "coordinates are not numbers; left out"],
+            ),
             (self.mixed, MIXED),
-            (self.times, "moments of tracks are left out; the places are kept"),
+            (
+                self.times,
+                [
+                    "moment of a track is left out; the place is kept",
+                    "moments of tracks are left out; the places are kept",
+                ],
+            ),
         ] {
-            if tally.count > 0 {
-                warnings.push(tally.first, format!("{} {what}", tally.count));
-            }
+            warnings.add_counted(tally, one, several);
         }
     }
 }

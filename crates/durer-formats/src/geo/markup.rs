@@ -27,8 +27,10 @@ pub fn push(
 }
 
 /// Words of a warning about positions counted by [`push`].
-pub const MIXED: &str =
-    "positions have a height where others of their line have none; heights that lack are 0";
+pub const MIXED: [&str; 2] = [
+    "position has a height where others of its line have none, or none where they have one; missing heights are 0",
+    "positions have a height where others of their line have none, or none where they have one; missing heights are 0",
+];
 
 /// Returns the local name of a document's root, if it is near the beginning.
 pub fn root(bytes: &[u8]) -> Option<&str> {

@@ -64,6 +64,20 @@ const MAX_DEPTH: usize = 128;
 /// Number of warnings that are kept; the rest is counted.
 const MAX_WARNINGS: usize = 1000;
 
+/// Returns a warning about geometries that cannot be read, with the reason for the first of them.
+fn unread(count: u64, why: &str) -> String {
+    let (one, several) =
+        ("geometry cannot be read and is left out", "geometries cannot be read and are left out");
+    format!("{}; of this one: {why}", crate::told::counted(count, one, several))
+}
+
+/// Returns a warning about features that cannot be read, with the reason for the first of them.
+fn unread_features(count: u64, why: &str) -> String {
+    let (one, several) =
+        ("feature cannot be read and is left out", "features cannot be read and are left out");
+    format!("{}; of this one: {why}", crate::told::counted(count, one, several))
+}
+
 /// Repairs and omissions while reading, the first thousand of them.
 #[derive(Debug, Clone, Default)]
 struct Warnings {
@@ -113,23 +127,29 @@ impl Warnings {
 
     /// Adds warnings about the counted faults.
     fn tell(&mut self) {
-        for (tally, what) in [
-            (
-                std::mem::take(&mut self.curves),
-                "curves are flattened to lines of 32 edges per quarter turn",
-            ),
-            (
-                std::mem::take(&mut self.members),
-                "members of geometries within collections, which GeoJSON does not define, are left out",
-            ),
-            (
-                std::mem::take(&mut self.nan),
-                "values are NaN or Infinity, which JSON does not have; they are null",
-            ),
-        ] {
-            if tally.count > 0 {
-                self.push(tally.first, format!("{} {what}", tally.count));
-            }
+        let [curves, members, nan] =
+            [&mut self.curves, &mut self.members, &mut self.nan].map(std::mem::take);
+        self.add_counted(
+            curves,
+            "curve is flattened to lines of 32 edges per quarter turn",
+            "curves are flattened to lines of 32 edges per quarter turn",
+        );
+        self.add_counted(
+            members,
+            "member of a geometry within a collection, which GeoJSON does not define, is left out",
+            "members of geometries within collections, which GeoJSON does not define, are left out",
+        );
+        self.add_counted(
+            nan,
+            "value is NaN or Infinity, which JSON does not have; it is null",
+            "values are NaN or Infinity, which JSON does not have; they are null",
+        );
+    }
+
+    /// Adds a warning about counted faults, if there are any, in words for one and for several.
+    fn add_counted(&mut self, tally: crate::text::Tally, one: &str, several: &str) {
+        if tally.count > 0 {
+            self.push(tally.first, crate::told::counted(tally.count, one, several));
         }
     }
 

@@ -23,6 +23,19 @@ pub struct Reader<R> {
     layers: Vec<String>,
     /// True once a feature has been read.
     begun: bool,
+    /// True if features that cannot be read are left out.
+    skips: bool,
+    /// Features that have been left out for it, with the reason for the first.
+    skipped: Skipped,
+}
+
+/// Features that cannot be read.
+#[derive(Debug, Default)]
+struct Skipped {
+    count: u64,
+    first: Place,
+    /// The reason, until it has been reported.
+    why: Option<String>,
 }
 
 enum Source<R> {
@@ -40,6 +53,17 @@ enum Source<R> {
     Csv(csv::Reader),
     /// Features that have been read.
     Held(std::vec::IntoIter<Feature>),
+}
+
+impl<R: Read> Source<R> {
+    /// Returns whether the next feature can be found after an error.
+    fn goes_on(&self) -> bool {
+        match self {
+            Self::GeoJson(reader) => reader.goes_on(),
+            Self::Wkt(..) | Self::WkbHex(..) | Self::Csv(_) | Self::Shapefile(_) => true,
+            _ => false,
+        }
+    }
 }
 
 impl<R: Read> Reader<R> {
@@ -101,7 +125,16 @@ impl<R: Read> Reader<R> {
         if beside.layer.is_some() && !format.has_layers() {
             warnings.note(format!("{format} has one layer; --layer does nothing"));
         }
-        Ok(Self { source, warnings, system, members, layers, begun: false })
+        Ok(Self {
+            source,
+            warnings,
+            system,
+            members,
+            layers,
+            begun: false,
+            skips: false,
+            skipped: Skipped::default(),
+        })
     }
 
     /// Returns the coordinate system given by the file for all its coordinates, as far as it has been read: a member of
@@ -135,11 +168,50 @@ impl<R: Read> Reader<R> {
             self.warnings
                 .note(format!("its {count} layers, {names}, become one; --layer names one"));
         }
-        let feature = self.next_of_source()?;
+        let feature = loop {
+            match self.next_of_source() {
+                Err(error) if self.skips && self.source.goes_on() && is_of_data(&error) => {
+                    self.skip(error);
+                }
+                next => break next?,
+            }
+        };
         if feature.is_none() {
             self.warnings.tell();
+            let Skipped { count, first, why } = &mut self.skipped;
+            if let Some(why) = why.take() {
+                let told = super::unread_features(*count, &why);
+                self.warnings.push(std::mem::take(first), told);
+            }
         }
         Ok(feature)
+    }
+
+    /// Leaves out features that cannot be read, from now on, where a format shows the end of such a feature: GeoJSON
+    /// (whose text is JSON), CSV, WKT (with a geometry per line), hexadecimal WKB and Shapefile. A warning at the end
+    /// counts them.
+    pub fn skip_failures(&mut self) {
+        self.skips = true;
+    }
+
+    /// Returns the number of features that have been left out because they cannot be read.
+    pub fn skipped(&self) -> u64 {
+        self.skipped.count
+    }
+
+    /// Counts a feature that cannot be read, and steps over the rest of it.
+    fn skip(&mut self, error: Error) {
+        let (place, why) = match error {
+            Error::Decode { place, message } => (place, message),
+            other => (Place::Whole, other.to_string()),
+        };
+        if self.skipped.count == 0 {
+            (self.skipped.first, self.skipped.why) = (place, Some(why));
+        }
+        self.skipped.count += 1;
+        if let Source::Wkt(text, mark) = &mut self.source {
+            *mark = wkt::Reader::new(text, *mark).next_line();
+        }
     }
 
     fn next_of_source(&mut self) -> Result<Option<Feature>> {
@@ -152,7 +224,9 @@ impl<R: Read> Reader<R> {
             Source::Wkt(text, mark) => {
                 let mut reader = wkt::Reader::new(text, *mark);
                 let feature = reader.next_feature();
-                *mark = reader.mark();
+                if feature.is_ok() {
+                    *mark = reader.mark();
+                }
                 self.warnings.append(&mut reader.warnings);
                 feature
             }
@@ -206,6 +280,11 @@ impl<R: Read> Reader<R> {
     pub fn further_warnings(&self) -> u64 {
         self.warnings.more
     }
+}
+
+/// Returns whether an error is about one feature's data.
+fn is_of_data(error: &Error) -> bool {
+    matches!(error, Error::Decode { .. } | Error::Unsupported { .. })
 }
 
 /// Returns the geometry of the next line that is not empty.

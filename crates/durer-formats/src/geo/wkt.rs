@@ -97,6 +97,14 @@ impl<'a> Reader<'a> {
         Mark { at: self.at, told: self.told }
     }
 
+    /// Returns the position after the line of the next geometry.
+    pub fn next_line(&mut self) -> Mark {
+        self.peek();
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        self.at += rest.iter().position(|&b| b == b'\n').map_or(rest.len(), |end| end + 1);
+        self.mark()
+    }
+
     fn peek(&mut self) -> Option<u8> {
         while self.text.get(self.at).is_some_and(u8::is_ascii_whitespace) {
             self.at += 1;

@@ -116,17 +116,13 @@ impl Reader {
     }
 
     fn tell(&mut self, warnings: &mut Warnings) {
-        for (tally, what) in [
-            (std::mem::take(&mut self.binary), "binary values are left out"),
-            (
-                std::mem::take(&mut self.infinite),
-                "geometries have coordinates that are not finite; left out",
-            ),
-        ] {
-            if tally.count > 0 {
-                warnings.push(tally.first, format!("{} {what}", tally.count));
-            }
-        }
+        let [binary, infinite] = [&mut self.binary, &mut self.infinite].map(std::mem::take);
+        warnings.add_counted(binary, "binary value is left out", "binary values are left out");
+        warnings.add_counted(
+            infinite,
+            "geometry has coordinates that are not finite; left out",
+            "geometries have coordinates that are not finite; left out",
+        );
     }
 }
 

@@ -153,6 +153,8 @@ pub struct Reader<R> {
     /// Features on lines of their own, since another document came.
     in_lines: u64,
     systems: Systems,
+    /// True if the text of the feature read last has been cut out of the stream.
+    is_cut: bool,
 }
 
 /// Coordinate systems of the features, which members `crs` state.
@@ -216,6 +218,7 @@ impl<R: Read> Reader<R> {
             documents: 0,
             in_lines: 0,
             systems: Systems::default(),
+            is_cut: false,
         }
     }
 
@@ -234,7 +237,13 @@ impl<R: Read> Reader<R> {
         &self.members
     }
 
+    /// Returns whether the next feature can be read after an error.
+    pub fn goes_on(&self) -> bool {
+        self.is_cut
+    }
+
     pub fn next_feature(&mut self) -> Result<Option<Feature>> {
+        self.is_cut = false;
         loop {
             match self.state {
                 State::Between => {
@@ -245,6 +254,7 @@ impl<R: Read> Reader<R> {
                         let one_line = self.stream.here.0 == self.collection.0;
                         self.in_lines = if one_line { self.in_lines + 1 } else { 0 };
                         self.stream.by_lines = self.in_lines >= LINES;
+                        self.is_cut = true;
                         return self.document().map(Some);
                     }
                     (self.in_lines, self.stream.by_lines) = (0, false);
@@ -266,6 +276,7 @@ impl<R: Read> Reader<R> {
                     }
                     self.state = State::Features(true);
                     let piece = self.stream.value("a feature")?;
+                    self.is_cut = true;
                     return self.feature(piece.text()).map(Some);
                 }
             }

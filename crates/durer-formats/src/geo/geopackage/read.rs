@@ -4,7 +4,7 @@ use super::blob;
 use super::contents::{Contents, Layer, contents};
 use crate::geo::beside::Beside;
 use crate::geo::members::{object, quoted};
-use crate::geo::{Feature, Geometry, Member, System, Warnings, number};
+use crate::geo::{Feature, Geometry, Member, System, Warnings, number, unread};
 use crate::sqlite::{Column, Database, Rows, Value};
 use crate::text::Tally;
 use crate::{Error, Place, Result};
@@ -99,15 +99,14 @@ impl Reader {
 
     fn tell(&mut self, warnings: &mut Warnings) {
         let faults = std::mem::take(&mut self.faults);
-        if faults.binary.count > 0 {
-            let message = format!("{} binary values are left out", faults.binary.count);
-            warnings.push(faults.binary.first, message);
-        }
+        warnings.add_counted(
+            faults.binary,
+            "binary value is left out",
+            "binary values are left out",
+        );
         if faults.geometries.count > 0 {
-            let (count, why) = (faults.geometries.count, faults.why);
-            let message =
-                format!("{count} geometries cannot be read and are left out; of this one: {why}");
-            warnings.push(faults.geometries.first, message);
+            let told = unread(faults.geometries.count, &faults.why);
+            warnings.push(faults.geometries.first, told);
         }
     }
 }

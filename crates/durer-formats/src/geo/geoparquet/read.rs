@@ -4,7 +4,7 @@ use super::values::{Meaning, json};
 use crate::foreign;
 use crate::geo::beside::Beside;
 use crate::geo::members::object;
-use crate::geo::{Feature, Geometry, Member, System, Warnings, wkb};
+use crate::geo::{Feature, Geometry, Member, System, Warnings, unread, wkb};
 use crate::text::Tally;
 use crate::{Error, Place, Result};
 use parquet::data_type::ByteArray;
@@ -105,14 +105,10 @@ impl Reader {
 
     fn tell(&mut self, warnings: &mut Warnings) {
         let (binary, broken) = (std::mem::take(&mut self.binary), std::mem::take(&mut self.broken));
-        if binary.count > 0 {
-            warnings.push(binary.first, format!("{} binary values are left out", binary.count));
-        }
+        warnings.add_counted(binary, "binary value is left out", "binary values are left out");
         if broken.count > 0 {
-            let (count, why) = (broken.count, &self.why);
-            let message =
-                format!("{count} geometries cannot be read and are left out; of this one: {why}");
-            warnings.push(broken.first, message);
+            let told = unread(broken.count, &self.why);
+            warnings.push(broken.first, told);
         }
     }
 }

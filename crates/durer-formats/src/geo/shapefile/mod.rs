@@ -131,21 +131,44 @@ impl Reader {
             let message = format!("the .dbf has {rows} rows for {records} records");
             warnings.push(Place::Whole, message);
         }
-        for (tally, what) in [
-            (faults.values, "values of the .dbf are not of the kind of their field; they are null"),
-            (faults.letters, "texts of the .dbf are not in its encoding; taken as Windows-1252"),
-            (faults.memos, "memos, which are in a separate file, are left out"),
-            (faults.rows, "records have no row in the .dbf; they have no fields"),
-            (faults.infinite, "geometries have coordinates that are not finite; left out"),
+        for (tally, one, several) in [
+            (
+                faults.values,
+                "value of the .dbf is not of the kind of its field; it is null",
+                "values of the .dbf are not of the kind of their field; they are null",
+            ),
+            (
+                faults.letters,
+                "text of the .dbf is not in its encoding; taken as Windows-1252",
+                "texts of the .dbf are not in its encoding; taken as Windows-1252",
+            ),
+            (
+                faults.memos,
+                "memo, which is in a separate file, is left out",
+                "memos, which are in a separate file, are left out",
+            ),
+            (
+                faults.rows,
+                "record has no row in the .dbf; it has no fields",
+                "records have no row in the .dbf; they have no fields",
+            ),
+            (
+                faults.infinite,
+                "geometry has coordinates that are not finite; left out",
+                "geometries have coordinates that are not finite; left out",
+            ),
             (
                 faults.patches,
+                "multipatch is flattened: its triangles and rings become polygons",
                 "multipatches are flattened: their triangles and rings become polygons",
             ),
-            (faults.measures, "positions have no measure where others have one; it is 0"),
+            (
+                faults.measures,
+                "position has no measure where others have one; it is 0",
+                "positions have no measure where others have one; it is 0",
+            ),
         ] {
-            if tally.count > 0 {
-                warnings.push(tally.first, format!("{} {what}", tally.count));
-            }
+            warnings.add_counted(tally, one, several);
         }
     }
 }
