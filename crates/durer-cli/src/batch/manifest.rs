@@ -52,6 +52,9 @@ pub fn read(
     let begin = source.fill_buf().map_err(|e| fail(&e))?;
     match begin.iter().find(|byte| !byte.is_ascii_whitespace()) {
         Some(b'{') => read_lines(&name, source, &mut each),
+        Some(b'[') => Err(Failure::Data(format!(
+            "{name}: it is an array of JSON; write each of its objects on a line of its own (jq -c '.[]')"
+        ))),
         _ => read_csv(&name, source, &mut each),
     }
 }
@@ -85,7 +88,7 @@ fn read_lines(
 /// Reads a table with a header.
 fn read_csv(
     name: &str,
-    source: impl Read,
+    mut source: impl BufRead,
     each: &mut dyn FnMut(Record) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let fail = |place: Option<u64>, what: String| {
@@ -103,7 +106,9 @@ fn read_csv(
             _ => fail(line, e.to_string()),
         }
     };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(source);
+    let delimiter = delimiter(source.fill_buf().map_err(|e| fail(None, in_words(&e)))?);
+    let mut builder = csv::ReaderBuilder::new();
+    let mut reader = builder.delimiter(delimiter).trim(csv::Trim::All).from_reader(source);
     let header = reader.headers().map_err(wrong)?.clone();
     check_columns(&header.iter().collect::<Vec<_>>())
         .map_err(|what| fail(Some(1), format!("{what}; the first line names the columns")))?;
@@ -117,6 +122,14 @@ fn read_csv(
     Ok(())
 }
 
+/// Returns the separator of a table, the most frequent one in its first line.
+fn delimiter(begin: &[u8]) -> u8 {
+    let line = begin.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let count = |delimiter: &u8| line.iter().filter(|byte| *byte == delimiter).count();
+    // Of several equally frequent ones, the comma.
+    [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
+}
+
 /// Checks that the columns of a table have different names, and that one of them is the id; a table without columns has no rows.
 fn check_columns(names: &[&str]) -> Result<(), String> {
     let mut known = HashSet::new();
@@ -124,7 +137,7 @@ fn check_columns(names: &[&str]) -> Result<(), String> {
         return Err(format!("column `{twice}` appears twice"));
     }
     if !names.is_empty() && !known.contains("id") {
-        return Err("there is no column `id`".to_owned());
+        return Err(format!("there is no column `id` among {}", names.join(", ")));
     }
     Ok(())
 }

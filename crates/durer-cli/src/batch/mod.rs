@@ -58,6 +58,9 @@ pub fn run(args: &BatchArgs) -> Result<(), Failure> {
     if waits {
         watch::note_signals();
     }
+    if let Some(hint) = rows.elsewhere(manifest).filter(|_| !args.quiet) {
+        let _ = writeln!(std::io::stderr().lock(), "durer: {hint}");
+    }
     let out = folder(&args.output)?;
     let mut journal = Journal::open(&out, shard)?;
     if args.restart {

@@ -6,7 +6,6 @@ use crate::given::{self, Given, is_by_hand, is_called, is_flag, is_without_value
 use crate::kind::Kind;
 use crate::places::OTHER_INPUTS;
 use clap::{Arg, ArgMatches, Command, CommandFactory, ValueHint};
-use durer_formats::geo::GeoFormat;
 use serde_json::Value;
 
 /// Commands that rows can have.
@@ -160,9 +159,14 @@ impl Parser {
             Value::Null => return Ok(None),
             Value::String(text) if text.is_empty() => return Ok(None),
             Value::Bool(is) if is_flag(arg) => vec![is.to_string()],
-            Value::String(text) if is_flag(arg) && ["true", "false"].contains(&&**text) => {
-                vec![text.clone()]
+            // Python writes True, spreadsheets TRUE.
+            Value::String(text) if is_flag(arg) && truth(text).is_some() => {
+                vec![text.to_ascii_lowercase()]
             }
+            Value::String(text) if is_without_value(arg) && truth(text) == Some(false) => {
+                return Ok(None);
+            }
+            Value::String(text) if is_without_value(arg) && truth(text) == Some(true) => Vec::new(),
             Value::Bool(false) if is_without_value(arg) => return Ok(None),
             Value::Bool(true) if is_without_value(arg) => Vec::new(),
             _ if is_flag(arg) => return Err(wrong("it is a flag: true or false")),
@@ -185,6 +189,14 @@ impl Parser {
         let kept: Vec<Given> = common.options.iter().filter(stays).cloned().collect();
         kept.into_iter().chain(own).filter(|g| !g.words().is_empty()).collect()
     }
+}
+
+/// Returns the truth value of a word, in any case.
+fn truth(word: &str) -> Option<bool> {
+    [("true", true), ("false", false)]
+        .into_iter()
+        .find(|(name, _)| word.eq_ignore_ascii_case(name))
+        .map(|(_, value)| value)
 }
 
 /// Returns a text or a number as on the command line.
@@ -211,7 +223,7 @@ pub fn suffix(command: &str, options: &[Given]) -> String {
         "info" => "json".to_owned(),
         "tiles" => value("to").unwrap_or("pmtiles").to_owned(),
         "clip" => {
-            let format = GeoFormat::ALL.into_iter().find(|f| Some(f.name()) == value("to"));
+            let format = value("to").and_then(|name| crate::layer::format(name).ok());
             let suffix = format.and_then(|format| format.suffixes().first().copied());
             suffix.unwrap_or("geojson").to_owned()
         }

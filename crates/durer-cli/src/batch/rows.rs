@@ -77,6 +77,18 @@ impl Rows {
         Ok(Self { rows, parser, common })
     }
 
+    /// Returns a hint if the first input is not in the current folder but in that of the manifest.
+    pub fn elsewhere(&self, manifest: &Path) -> Option<String> {
+        let input = self.rows.first()?.inputs.first().filter(|input| !input.starts_with(DATA))?;
+        let folder = manifest.parent().filter(|folder| !folder.as_os_str().is_empty())?;
+        let there = folder.join(input);
+        let is_there = !Path::new(input).exists() && there.exists();
+        is_there.then(|| {
+            let (name, there) = (display_name(manifest), display_name(&there));
+            format!("{name}: inputs are named from the current folder, not from the manifest's; {there} exists")
+        })
+    }
+
     /// Returns the folders of all files that rows read, as far as they are there, without links.
     pub fn folders(&self) -> Vec<PathBuf> {
         let mut folders = BTreeSet::new();

@@ -163,9 +163,11 @@ pub fn words(error: &durer_formats::Error) -> String {
     }
 }
 
-/// Reads the name of a format.
+/// Reads the name of a format, or a suffix of its files.
 pub fn format(text: &str) -> Result<GeoFormat, String> {
     let found = GeoFormat::ALL.into_iter().find(|f| f.name() == text);
+    let by_suffix = || GeoFormat::ALL.into_iter().find(|f| f.suffixes().contains(&text));
     found
+        .or_else(by_suffix)
         .ok_or_else(|| format!("it must be one of {}", GeoFormat::ALL.map(|f| f.name()).join(", ")))
 }

@@ -354,3 +354,37 @@ fn confined_rows_write_within_out() {
     let of_link = entries.iter().find(|entry| entry["id"] == "link/a").unwrap();
     assert_eq!(of_link["error"]["kind"], "write", "{of_link}");
 }
+
+#[test]
+fn tables_of_spreadsheets_and_python_are_read() {
+    let folder = Folder::with_models();
+    for table in [
+        "id;input;grid;edges\na;cube.obj;TRUE;false\nb;cube.obj;False;\n",
+        "id, input, grid, edges\na, cube.obj , True, False\nb, cube.obj, false,\n",
+        "id\tinput\tgrid\tedges\na\tcube.obj\ttrue\tFALSE\nb\tcube.obj\tfalse\t\n",
+    ] {
+        folder.write("rows.csv", table);
+        let ended = batch(&folder, "--restart");
+        assert_eq!(ended.code, 0, "{table}: {}", ended.err);
+        folder.must(&format!("render cube.obj -o grid.png --grid {SMALL}"));
+        folder.must(&format!("render cube.obj -o plain.png {SMALL}"));
+        assert_eq!(folder.read("out/a.png"), folder.read("grid.png"), "{table}");
+        assert_eq!(folder.read("out/b.png"), folder.read("plain.png"), "{table}");
+    }
+    for (table, told) in [
+        ("ID;input\na;cube.obj\n", "there is no column `id` among ID, input"),
+        ("[{\"id\":\"a\"}]", "it is an array of JSON; write each of its objects on a line"),
+    ] {
+        folder.write("rows.csv", table);
+        batch(&folder, "").fails(1, told);
+    }
+    fs::create_dir(folder.path("tables")).unwrap();
+    fs::copy(folder.path("cube.obj"), folder.path("tables/own.obj")).unwrap();
+    folder.write("tables/rows.csv", "id,input\na,own.obj\n");
+    let ended = folder.run(&format!("batch tables/rows.csv -o there -- render {SMALL}"));
+    ended.fails(3, "inputs are named from the current folder, not from the manifest's");
+    folder.write("a.geojson", r#"{"type":"Point","coordinates":[1,2]}"#);
+    folder.write("rows.csv", "id,input,to\na,a.geojson,fgb\n");
+    let ended = folder.run("batch rows.csv -o maps -- clip");
+    assert_eq!((ended.code, folder.path("maps/a.fgb").exists()), (0, true), "{}", ended.err);
+}
