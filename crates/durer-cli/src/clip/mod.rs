@@ -252,7 +252,7 @@ fn tell(
     let told = args.systems.from_crs.as_ref().map_or_else(|| reader.system(), Crs::system);
     found.extend(report.srids.other_mask(&report.mask_srids, &told));
     if !is_shifted {
-        let is_told = reader.system().code.is_some() && to.is_geojson();
+        let is_told = reader.system().code.is_some() && to.is_lonlat();
         found.extend(report.srids.told(joins(args), to, is_told));
     }
     found.extend(further);

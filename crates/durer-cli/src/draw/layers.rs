@@ -1,5 +1,6 @@
 //! Layers on the command line, each with the style that follows it.
 
+use crate::layer::{Condition, condition};
 use crate::{color, values};
 use clap::error::Error;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum, ValueHint};
@@ -61,6 +62,8 @@ pub struct Layer {
     pub input: PathBuf,
     /// The layer of the file, if one is named.
     pub chosen: Option<String>,
+    /// Conditions on its features; all must hold.
+    pub conditions: Vec<Condition>,
     pub style: Style,
     pub labels: Labels,
     /// True if an option of the style was given for it.
@@ -83,6 +86,12 @@ struct LayerArgs {
     /// The layer of a TopoJSON or GeoPackage file; of an archive, the file or FILE/LAYER [default: all, as one]
     #[arg(long, value_name = "NAME", help_heading = "Reading")]
     layer: Vec<String>,
+    /// Draw features whose field satisfies a condition: FIELD=VALUE; also !=, <, <=, >, >= and ~ (contains, ignoring
+    /// case)
+    ///
+    /// If a layer has several, all must hold. Numbers are compared as numbers; a VALUE in quotes is a text.
+    #[arg(long = "where", value_name = "FIELD=VALUE", value_parser = condition, help_heading = "Reading")]
+    conditions: Vec<Condition>,
     /// The colour of areas and markers, or `none` [default: #e3e7e0]
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     fill: Vec<Ink>,
@@ -186,6 +195,7 @@ impl FromArgMatches for Layers {
         let mut common = (Style::default(), Labels::default());
         apply(matches, 0..first, &mut common);
         let of_all: Option<String> = last(matches, "layer", &(0..first));
+        let for_all: Vec<Condition> = all(matches, "conditions", &(0..first));
         let ends = places.iter().skip(1).copied().chain([usize::MAX]);
         let layers =
             inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
@@ -194,7 +204,9 @@ impl FromArgMatches for Layers {
                 let styled = given || look != (Style::default(), Labels::default());
                 let (style, labels) = look;
                 let chosen = last(matches, "layer", &(*start..end)).or_else(|| of_all.clone());
-                Layer { input, chosen, style, labels, styled }
+                let own = all(matches, "conditions", &(*start..end));
+                let conditions = for_all.iter().cloned().chain(own).collect();
+                Layer { input, chosen, conditions, style, labels, styled }
             });
         Ok(Self(layers.collect()))
     }
@@ -233,15 +245,24 @@ fn apply(matches: &ArgMatches, place: Range<usize>, (style, labels): &mut (Style
     any
 }
 
+/// Returns the values of an option within a part of the command line.
+fn all<T: Clone + Send + Sync + 'static>(
+    matches: &ArgMatches,
+    name: &str,
+    place: &Range<usize>,
+) -> Vec<T> {
+    let values = matches.get_many::<T>(name).into_iter().flatten();
+    let placed = matches.indices_of(name).into_iter().flatten().zip(values);
+    placed.filter(|(index, _)| place.contains(index)).map(|(_, value)| value.clone()).collect()
+}
+
 /// Returns the last value of an option within a part of the command line.
 fn last<T: Clone + Send + Sync + 'static>(
     matches: &ArgMatches,
     name: &str,
     place: &Range<usize>,
 ) -> Option<T> {
-    let values = matches.get_many::<T>(name)?;
-    let mut placed = matches.indices_of(name)?.zip(values);
-    placed.rfind(|(index, _)| place.contains(index)).map(|(_, value)| value.clone())
+    all(matches, name, place).pop()
 }
 
 #[cfg(test)]
@@ -272,6 +293,8 @@ mod tests {
         assert_eq!(look(&found[0]), (name("a"), Some([255, 0, 0, 255]), None));
         assert_eq!(look(&found[1]), (name("b"), grey, Some([0, 0, 255, 255])));
         assert_eq!(look(&found[2]), (name("c"), grey, None));
+        let found = layers("x --where n>1 a --where t=x --where u=y b");
+        assert_eq!([found[0].conditions.len(), found[1].conditions.len()], [3, 1]);
         let plain = layers("x a");
         assert!(!plain[0].styled && plain[0].style == Style::default());
     }

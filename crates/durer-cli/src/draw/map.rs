@@ -6,6 +6,7 @@ use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, Surface, fonts, is_for_cad, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
+use crate::layer::{FieldArgs, Fields};
 use durer::curve::text::Font;
 use durer::map::{self, Label, Map, Style};
 use durer::math::{DVec2, Rect};
@@ -14,6 +15,7 @@ use durer_formats::drawing::DxfFrame;
 use durer_formats::geo::crs::{Crs, Transform};
 use durer_formats::geo::{Beside, Feature, Reader, System};
 use durer_formats::svg::no_glyphs;
+use durer_formats::told::counted;
 use std::time::Instant;
 
 /// Natural Earth's property of how important a label is: small numbers first.
@@ -151,10 +153,22 @@ impl Job<'_> {
         };
         let reader = Reader::with(given.format, &given.file.bytes[..], &beside);
         let mut reader = reader.map_err(fail)?;
-        let mut features = Vec::new();
-        while let Some(feature) = reader.next_feature().map_err(fail)? {
+        let (mut features, mut all) = (Vec::new(), 0_u64);
+        let conditions = given.layer.conditions.clone();
+        let mut fields = Fields::new(&FieldArgs { conditions, ..FieldArgs::default() });
+        while let Some(mut feature) = reader.next_feature().map_err(fail)? {
+            all += 1;
+            if !fields.apply(&mut feature) {
+                continue;
+            }
             crate::layer::keep(&feature, &self.args.running.work).map_err(|e| fail(e.into()))?;
             features.push(feature);
+        }
+        let none = (features.is_empty() && all > 0)
+            .then(|| format!("none of its {} meets --where", counted(all, "feature", "features")));
+        for message in fields.told().into_iter().chain(none) {
+            self.messages.warning(&name, &message);
+            self.report.warnings.push(message);
         }
         self.systems.add(&features, &reader.system(), &name);
         self.warn(&name, reader.warnings());

@@ -21,6 +21,9 @@ impl Job<'_> {
         if given.layer.chosen.is_some() {
             return Err(Failure::Usage("--layer is for map data; an SVG has none".to_owned()));
         }
+        if !given.layer.conditions.is_empty() {
+            return Err(Failure::Usage("--where is for map data; an SVG has no fields".to_owned()));
+        }
         if given.layer.styled || given.layer.style != Style::default() {
             let message = "--fill, --stroke and other styles are for map data; an SVG has its own";
             return Err(Failure::Usage(message.to_owned()));

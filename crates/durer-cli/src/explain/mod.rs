@@ -33,7 +33,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         return report::print_text(&list(explain::lessons(), language));
     };
     let usage = |e: durer::Error| Failure::of_library(&e);
-    let lesson = explain::lesson(name).map_err(usage)?;
+    // Names are written like Cohen-Sutherland or cohen_sutherland, too.
+    let name = name.to_lowercase().replace(['_', ' ', '–'], "-");
+    let lesson = explain::lesson(&name).map_err(usage)?;
     if args.list {
         return report::print_text(&list([lesson], language));
     }

@@ -74,7 +74,8 @@ const TESTS: [(&str, Test); 9] = [
     ("~", Test::Contains),
 ];
 
-fn condition(text: &str) -> Result<Condition, String> {
+/// Reads a condition.
+pub fn condition(text: &str) -> Result<Condition, String> {
     let signs = TESTS.iter().filter_map(|(sign, test)| Some((text.find(sign)?, *sign, *test)));
     let first = signs.min_by_key(|(at, sign, _)| (*at, std::cmp::Reverse(sign.len())));
     let Some((at, sign, test)) = first.filter(|(at, ..)| *at > 0) else {

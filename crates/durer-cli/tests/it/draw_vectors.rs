@@ -372,6 +372,33 @@ fn maps_for_cad_have_the_coordinates_of_the_map() {
 }
 
 #[test]
+fn features_are_drawn_that_meet_conditions() {
+    let folder = Folder::new();
+    let city = |x: u32, people: u32| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"people":{people}}},"geometry":{{"type":"Point","coordinates":[{x},2]}}}}"#
+        )
+    };
+    folder.write("c.geojsonl", [city(1, 10), city(2, 200), city(3, 3000)].join("\n"));
+    let counts = |line: &str| {
+        let told = folder.must(&format!("draw {line} -o a.png --json --window 0,0,4,4")).json();
+        told["layers"]
+            .as_array()
+            .expect("layers")
+            .iter()
+            .map(|l| l["map"]["points"].clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(counts("c.geojsonl --where people>10"), [2]);
+    assert_eq!(counts("c.geojsonl --where people>10 --where people<1000 c.geojsonl"), [1, 3]);
+    assert_eq!(counts("--where people>10 c.geojsonl c.geojsonl --where people!=200"), [2, 1]);
+    let ended = folder.must("draw c.geojsonl --where people=1 -o a.png --window 0,0,4,4");
+    assert!(ended.err.contains("none of its 3 features meets --where"), "{}", ended.err);
+    folder.write("a.svg", SVG);
+    folder.run("draw a.svg --where a=1 -o a.png").fails(2, "--where is for map data");
+}
+
+#[test]
 fn layers_in_several_systems_are_told() {
     let folder = Folder::new();
     folder.write("a.geojson", r#"{"type":"Point","coordinates":[9,48]}"#);

@@ -131,3 +131,13 @@ fn more_points_than_can_be_explained_are_an_error_of_the_file() {
     run.fails(1, "ring.wkt: points to be explained 2500 is above the limit of 2000");
     assert!(!folder.names().contains(&"steps.svg".to_owned()));
 }
+
+#[test]
+fn names_of_algorithms_may_be_written_as_in_texts() {
+    let folder = Folder::new();
+    let steps = folder.must("explain cohen-sutherland").out;
+    for name in ["Cohen-Sutherland", "cohen_sutherland", "Cohen–Sutherland"] {
+        assert_eq!(folder.must(&format!("explain {name}")).out, steps, "{name}");
+    }
+    folder.run("explain cohen").fails(2, "the nearest are: cohen-sutherland");
+}

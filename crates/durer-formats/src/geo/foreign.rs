@@ -28,6 +28,8 @@ const MAGIC: [(&[u8], &str, &str); 17] = [
 const EXPORT: &str = "export it as GeoJSON, GeoPackage or FlatGeobuf";
 const PIXELS: &str = "it holds pixels and no features";
 
+const NAMES: &str = "a first line such as x,y makes it a table (CSV)";
+
 /// Roots of XML documents with other contents.
 const ROOTS: [(&str, &str, &str); 4] = [
     ("osm", "OpenStreetMap XML", EXPORT),
@@ -45,8 +47,30 @@ pub fn of_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
         .map(|(_, what, hint)| (*what, *hint))
         .or_else(|| root().map(|(_, what, hint)| (*what, *hint)))
         .or_else(|| is_pbf(bytes).then_some(("OpenStreetMap PBF", EXPORT)))
+        .or_else(|| is_drawing(bytes).then_some(("a drawing of AutoCAD (DXF or DWG)", EXPORT)))
+        .or_else(|| is_numbers(bytes).then_some(("a list of numbers without names", NAMES)))
         .or_else(|| is_utf16(bytes).then_some(("text in UTF-16", "save it in UTF-8")))
         .or_else(|| is_dbf(bytes).then_some(("a table of a Shapefile", "open the .shp beside it")))
+}
+
+/// Returns whether a DXF file begins, as text or as binary data, or a DWG file of any version since 14.
+fn is_drawing(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let is_text = matches!((lines.next(), lines.next()), (Some(b"0"), Some(b"SECTION")));
+    let is_dwg = bytes.starts_with(b"AC10")
+        && bytes.get(4..6).is_some_and(|v| v.iter().all(u8::is_ascii_digit));
+    is_text || is_dwg || bytes.starts_with(b"AutoCAD Binary DXF")
+}
+
+/// Returns whether the first line has two to four numbers and nothing else.
+fn is_numbers(bytes: &[u8]) -> bool {
+    let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let Ok(line) = std::str::from_utf8(line) else { return false };
+    let parts = line.split([',', ';', '\t', ' ', '\r']).filter(|part| !part.is_empty());
+    let is_number = |part: &str| part.parse::<f64>().is_ok_and(f64::is_finite);
+    let (numbers, others): (Vec<&str>, Vec<&str>) = parts.partition(|part| is_number(part));
+    others.is_empty() && (2..=4).contains(&numbers.len())
 }
 
 /// Returns whether text in UTF-16 begins, other than XML, with a mark of the order of bytes.

@@ -476,6 +476,22 @@ fn numbers_beyond_64_bits_keep_their_digits() {
 }
 
 #[test]
+fn drawings_and_lists_of_numbers_are_named() {
+    for (bytes, name) in [
+        (&b"  0\r\nSECTION\r\n  2\r\nHEADER\r\n"[..], "this is a drawing of AutoCAD"),
+        (b"AC1032\0\0", "this is a drawing of AutoCAD"),
+        (b"AutoCAD Binary DXF\r\n", "this is a drawing of AutoCAD"),
+        (b"1 2\n3 4\n", "this is a list of numbers without names; a first line such as x,y"),
+        (b"13.4, 52.5\r\n", "this is a list of numbers without names"),
+        (b"1\n", "not a known format"),
+        (b"one two\n", "not a known format"),
+    ] {
+        assert!(GeoFormat::foreign(bytes).starts_with(name), "{bytes:?}");
+        assert_eq!(GeoFormat::of_content(bytes), None);
+    }
+}
+
+#[test]
 fn other_formats_of_json_are_named() {
     for (text, name) in [
         (
