@@ -345,7 +345,10 @@ fn maps_for_cad_have_the_coordinates_of_the_map() {
     folder.must("draw utm.geojson -o a.dxf --size 200x400 --dashes 4,2");
     let dxf = String::from_utf8(folder.read("a.dxf")).expect("ASCII");
     let all = entities(&dxf);
-    let line = all.iter().find(|e| e[0].1 == "LWPOLYLINE").expect("a border");
+    let is_border = |e: &&Vec<(i32, String)>| {
+        e[0].1 == "LWPOLYLINE" && e.iter().filter(|t| t.0 == 10).count() == 3
+    };
+    let line = all.iter().find(is_border).expect("a border");
     let values = |code: i32| {
         let of_code = line.iter().filter(|t| t.0 == code);
         of_code.map(|t| t.1.parse::<f64>().expect("a number")).collect::<Vec<_>>()

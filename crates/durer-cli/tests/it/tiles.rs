@@ -578,7 +578,7 @@ fn files_in_other_systems_are_converted() {
     );
     folder.must("tiles a.geojson -o a/{z}/{x}/{y}.geojson --zoom 6");
     let expected = folder.read("a/6/33/22.geojson");
-    for (name, code) in [("utm.gpkg", 25832), ("web.shp", 3857), ("ewkt.wkt", 25832)] {
+    for (name, code) in [("utm.gpkg", 25832), ("web.fgb", 3857), ("ewkt.wkt", 25832)] {
         folder.must(&format!("clip a.geojson --to-crs EPSG:{code} -o {name}"));
         let ended =
             folder.must(&format!("tiles {name} -o b/{{z}}/{{x}}/{{y}}.geojson --zoom 6 --layer a"));

@@ -81,7 +81,7 @@ fn columns_of_csv_are_numbers_only_where_all_are() {
     );
     assert_eq!(
         warnings,
-        ["line 5: 1 rows have no numbers in the columns of their place; they have no geometry"]
+        ["line 5: 1 row has no numbers in the columns of its place; it has no geometry"]
     );
     let (features, warnings) = read(
         b"WKT,a\n\"SRID=4326;POINT (1 2)\",1\n0101000000000000000000F03F0000000000000040,2\n,3\n",
@@ -300,7 +300,7 @@ fn members_of_geometries_are_kept() {
     let (features, warnings) = read(text.as_bytes(), "");
     let out = String::from_utf8(write(GeoFormat::GeoJsonSeq, &features)).expect("text");
     assert!(out.contains(r#"[1,2]}],"b":{"c":2}}"#), "{out}");
-    assert!(warnings[0].contains("1 members of geometries within collections"), "{warnings:?}");
+    assert!(warnings[0].contains("1 member of a geometry within a collection"), "{warnings:?}");
 }
 
 #[test]
@@ -527,7 +527,7 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
         (
             GeoFormat::GeoJsonSeq,
             format!("{a}\n{bad}\n{{\"type\":\"Nothing\"}}\n{b}\n"),
-            "line 2, column 80: 2 features",
+            "line 2, column 79: 2 features",
         ),
         (
             GeoFormat::Csv,
@@ -542,7 +542,7 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
         (
             GeoFormat::WkbHex,
             format!("{}\n01010000\nzz\n{}\n", hex(0xf0), hex(0xf8)),
-            "line 2, column 11: 2 features",
+            "line 2, column 3: 2 features",
         ),
     ];
     for (format, text, told) in cases {

@@ -65,7 +65,7 @@ fn a_layer_has_numbers_fields_and_its_system() {
             text(&features, GeoFormat::Wkt),
             "SRID=4326;POINT (7.5 47)\nSRID=4326;POINT (8 47.5)\n"
         );
-        assert_eq!(warnings, ["layer Städte, row 3: 1 binary values are left out"]);
+        assert_eq!(warnings, ["layer Städte, row 3: 1 binary value is left out"]);
     }
 }
 
@@ -92,7 +92,7 @@ fn geometries_of_all_kinds_are_read_and_bad_ones_told() {
         warnings,
         [
             "layer lines, row 5: 2 geometries cannot be read and are left out; of this one: byte 0: a geometry must begin with GP and a version of 0",
-            "layer lines, row 2: 1 curves are flattened to lines of 32 edges per quarter turn"
+            "layer lines, row 2: 1 curve is flattened to lines of 32 edges per quarter turn"
         ]
     );
 }

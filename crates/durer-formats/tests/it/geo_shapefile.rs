@@ -148,7 +148,7 @@ fn texts_are_decoded_as_told() {
     files.0.insert("a.dbf".to_owned(), table(0, b"\xe4x    "));
     let (features, _, warnings) = read(&files);
     assert_eq!(features[0].properties.as_deref(), Some("{\"T\":\"äx\"}"));
-    assert!(warnings[0].contains("1 texts of the .dbf are not in its encoding"), "{warnings:?}");
+    assert!(warnings[0].contains("1 text of the .dbf is not in its encoding"), "{warnings:?}");
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn what_is_missing_or_broken_is_told() {
     short[4] = 1;
     files.0.insert("a.dbf".to_owned(), short);
     let (_, _, warnings) = read(&files);
-    assert!(warnings.iter().any(|w| w == "the .dbf has 1 rows for 2 records"), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w == "the .dbf has 1 row for 2 records"), "{warnings:?}");
     files.0.insert("a.dbf".to_owned(), dbf);
     let shp = files.0["a.shp"].clone();
     files.0.insert("a.shp".to_owned(), shp[..shp.len() - 1].to_vec());

@@ -11,6 +11,7 @@ mod write;
 use super::beside::Beside;
 use super::{Feature, System, Warnings};
 use crate::text::Tally;
+use crate::told::counted;
 use crate::{Error, Place, Result};
 use dbf::Table;
 use encoding::Encoding;
@@ -127,8 +128,9 @@ impl Reader {
         if let Some(table) = self.table.take()
             && table.rows() != self.row
         {
-            let (rows, records) = (table.rows(), self.row);
-            let message = format!("the .dbf has {rows} rows for {records} records");
+            let rows = counted(table.rows() as u64, "row", "rows");
+            let records = counted(self.row as u64, "record", "records");
+            let message = format!("the .dbf has {rows} for {records}");
             warnings.push(Place::Whole, message);
         }
         for (tally, one, several) in [
