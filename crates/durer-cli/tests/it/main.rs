@@ -48,4 +48,5 @@ mod streams;
 mod stumbles;
 mod thumbnailer;
 mod tiles;
+mod tiles_read;
 mod up_axis;

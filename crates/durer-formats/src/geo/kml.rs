@@ -10,6 +10,7 @@ use crate::collada::document::Document;
 use crate::text::Tally;
 use crate::{Error, Place, Result};
 use durer::math::DVec2;
+use std::collections::BTreeMap;
 
 /// Memory that the tree of elements may take, in bytes.
 const MAX_MEMORY: u64 = 8 << 30;
@@ -25,7 +26,8 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
     let document = Document::parse(text, MAX_MEMORY)?;
     let root = document.root().filter(|&root| document.name(root) == "kml");
     let root = root.ok_or_else(|| Error::line(1, 0, "there is no kml element"))?;
-    let mut reader = Reader { document, faults: Faults::default() };
+    let types = types(&document, root);
+    let mut reader = Reader { document, types, faults: Faults::default() };
     let mut features = Vec::new();
     for element in reader.document.inside(root).collect::<Vec<_>>() {
         let name = reader.document.name(element).to_owned();
@@ -79,8 +81,50 @@ impl Faults {
     }
 }
 
+/// Returns the types of fields that schemas declare, by the fields' names; none for names with several types.
+fn types(document: &Document<'_>, root: usize) -> BTreeMap<String, Option<Type>> {
+    let mut types = BTreeMap::new();
+    for schema in document.inside(root).filter(|&e| document.name(e) == "Schema") {
+        for field in document.named(schema, "SimpleField") {
+            let [name, declared] = ["name", "type"].map(|key| document.attribute(field, key));
+            let declared = match declared.unwrap_or_default() {
+                "int" | "uint" | "short" | "ushort" | "float" | "double" => Some(Type::Number),
+                "bool" => Some(Type::Truth),
+                _ => None,
+            };
+            let known = types.entry(name.unwrap_or_default().to_owned()).or_insert(declared);
+            *known = known.filter(|known| Some(*known) == declared);
+        }
+    }
+    types
+}
+
+/// Type of a field other than text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Type {
+    Number,
+    Truth,
+}
+
+impl Type {
+    /// Returns a text of this type in JSON; `None` if it is not of the type.
+    fn json(self, text: &str) -> Option<String> {
+        let text = text.trim();
+        match (self, text) {
+            (Self::Number, _) => {
+                serde_json::from_str::<serde_json::Number>(text).ok().map(|_| text.to_owned())
+            }
+            (Self::Truth, "true" | "1") => Some("true".to_owned()),
+            (Self::Truth, "false" | "0") => Some("false".to_owned()),
+            (Self::Truth, _) => None,
+        }
+    }
+}
+
 struct Reader<'a> {
     document: Document<'a>,
+    /// Types of fields that are not texts.
+    types: BTreeMap<String, Option<Type>>,
     faults: Faults,
 }
 
@@ -100,7 +144,10 @@ impl Reader<'_> {
         let document = &self.document;
         let mut fields = Vec::new();
         let mut add = |key: &str, element: usize| {
-            let text = quoted(&document.text(element));
+            let text = document.text(element);
+            let is_typed = document.name(element) == "SimpleData";
+            let declared = self.types.get(key).copied().flatten().filter(|_| is_typed);
+            let text = declared.and_then(|t| t.json(&text)).unwrap_or_else(|| quoted(&text));
             if !fields.iter().any(|m: &Member| m.name == quoted(key)) {
                 fields.push(Member::new(key, text));
             }

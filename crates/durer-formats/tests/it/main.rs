@@ -18,6 +18,7 @@ mod geo_curves;
 mod geo_formats;
 mod geo_package;
 mod geo_parquet;
+mod geo_programs;
 mod geo_shapefile;
 mod gltf;
 mod gltf_extensions;
