@@ -2,7 +2,7 @@
 
 use super::Job;
 use crate::failure::Failure;
-use crate::layer::{CRS, Shift, SystemArgs};
+use crate::layer::{CRS, Shift, SystemArgs, late};
 use crate::options::TileCoordinates;
 use durer::math::DVec2;
 use durer_formats::geo::crs::Crs;
@@ -70,22 +70,14 @@ impl Job<'_> {
 
     /// Refuses a system that the file states after its features, if they would have been treated otherwise.
     pub(super) fn check_system(&self) -> Result<(), Failure> {
-        let last = self.reader.system();
-        let is_late = self.reader.members().iter().any(|member| member.name == CRS)
-            && self.told.as_ref().is_some_and(|told| *told != last);
         let matters =
             self.shift.is_some() || self.args.region.tiles.is_some() || self.to.tells_system();
-        if !is_late || !matters || self.args.systems.from_crs.is_some() {
-            return Ok(());
+        match late(self.told.as_ref(), self.reader) {
+            Some((why, option)) if matters && self.args.systems.from_crs.is_none() => {
+                Err(self.fail(format!("{why}; {option} sets their system")))
+            }
+            _ => Ok(()),
         }
-        let option = match last.code {
-            Some(code) => format!("--from-crs EPSG:{code}"),
-            None => "--from-crs".to_owned(),
-        };
-        Err(self.fail(format!(
-            "the member crs follows the features, which have been read as longitudes and latitudes; {option} sets their \
-             system"
-        )))
     }
 
     /// Returns the coordinate system of the output.

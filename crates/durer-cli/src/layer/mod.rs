@@ -11,7 +11,7 @@ pub use fields::{Condition, FieldArgs, Fields, condition};
 pub use info::{LayerInfo, of_layers};
 pub use out::{finish, named_format, writer};
 pub use sink::{Sink, failure};
-pub use systems::{CRS, Shift, SystemArgs};
+pub use systems::{CRS, Shift, SystemArgs, late};
 
 use crate::failure::{Failure, in_words};
 use crate::input::{self, display_name};

@@ -1,5 +1,6 @@
 //! From one coordinate system to another: `--from-crs`, `--to-crs`.
 
+use super::Source;
 use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
@@ -8,6 +9,21 @@ use durer_formats::told::counted;
 
 /// The member for the coordinate system in the older version of GeoJSON, as JSON.
 pub const CRS: &str = "\"crs\"";
+
+/// Returns what is wrong if a file states its system only after its features, which have been taken to be in another
+/// one, and the option of `durer clip` that helps.
+pub fn late(told: Option<&System>, reader: &Source) -> Option<(&'static str, String)> {
+    let last = reader.system();
+    let is_late = told.is_some_and(|told| *told != last)
+        && reader.members().iter().any(|member| member.name == CRS);
+    is_late.then(|| {
+        let code = last.code.map(|code| format!(" EPSG:{code}")).unwrap_or_default();
+        (
+            "the member crs follows the features, which have been read as longitudes and latitudes",
+            format!("--from-crs{code}"),
+        )
+    })
+}
 
 /// Options for coordinate systems.
 #[derive(Debug, Clone, Default, Args)]

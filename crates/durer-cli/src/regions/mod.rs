@@ -16,13 +16,13 @@ pub use simplify::{EXAMPLES as SIMPLIFY, SimplifyArgs, run as simplify};
 use crate::clip::Counts;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{self, FieldArgs, Fields, Source, failure, named_format, words};
+use crate::layer::{self, FieldArgs, Fields, Source, failure, late, named_format, words};
 use crate::messages::Messages;
 use crate::options::RunningArgs;
 use crate::places::is_stream;
 use clap::{Args, ValueHint};
 use durer::parallel;
-use durer_formats::geo::{Feature, GeoFormat, Geometry};
+use durer_formats::geo::{Feature, GeoFormat, Geometry, System};
 use durer_formats::told::counted;
 use serde::Serialize;
 use simplify::Simplified;
@@ -155,9 +155,10 @@ impl<'a> Job<'a> {
         change: impl Fn(&Feature, &Geometry) -> durer::Result<(Option<Geometry>, N)> + Sync,
         mut note: impl FnMut(&mut Report, &mut Feature, u64, N),
     ) -> Result<(), Failure> {
-        let mut writer = None;
+        let (mut writer, mut told) = (None, None);
         loop {
             let features = self.batch(BATCH)?;
+            told.get_or_insert_with(|| self.reader.system());
             if writer.is_some() && features.is_empty() {
                 break;
             }
@@ -183,7 +184,19 @@ impl<'a> Job<'a> {
                 writer.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
             }
         }
+        self.check_system(told.as_ref())?;
         self.end(writer)
+    }
+
+    /// Refuses a system that the file states after the features, if the output states the one before.
+    fn check_system(&self, told: Option<&System>) -> Result<(), Failure> {
+        match late(told, &self.reader) {
+            Some((why, option)) if self.to.tells_system() => {
+                Err(self
+                    .fail(format!("{why}; durer clip {option} writes a file that states it first")))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Writes these features, and nothing else.

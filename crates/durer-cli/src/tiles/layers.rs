@@ -3,7 +3,7 @@
 use super::args::TilesArgs;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{Fields, Shift, SystemArgs, keep, open, packed_names, words};
+use crate::layer::{Fields, Shift, SystemArgs, keep, late, open, packed_names, words};
 use crate::messages::Messages;
 use crate::names;
 use crate::options::TileCoordinates;
@@ -204,6 +204,11 @@ fn read_file(
             all.add(args, layer, feature, placed, *number, &mut doubts);
         }
         messages.progress.stage(|| format!("{} features", all.read));
+    }
+    let stated = placing.told.as_ref().filter(|_| placing.shift.is_some());
+    if let Some((why, option)) = late(stated, &reader) {
+        let hint = format!("durer clip {option} writes a file that states it first");
+        return Err(Failure::Data(format!("{shown}: {why}; {hint}")));
     }
     let mut told = reader.warnings().to_vec();
     if layers.len() > 1 {

@@ -298,7 +298,16 @@ fn systems_that_geojson_states_are_converted_from() {
         ended.fails(1, "the member crs follows the features");
         assert!(ended.err.contains("--from-crs EPSG:3857"), "{}", ended.err);
     }
-    assert!(!folder.path("l.shp").exists() && !folder.path("l.geojson").exists());
+    for command in
+        ["simplify late.geojson --each --tolerance 1 -o l.shp", "tiles late.geojson -o l.pmtiles"]
+    {
+        folder
+            .run(command)
+            .fails(1, "durer clip --from-crs EPSG:3857 writes a file that states it");
+    }
+    for name in ["l.shp", "l.geojson", "l.pmtiles"] {
+        assert!(!folder.path(name).exists(), "{name}");
+    }
     folder.must("clip late.geojson --from-crs 3857 --to-crs EPSG:4326 -o l.geojson");
     folder.must("clip late.geojson --window 0,0,9e6,9e6 -o l.geojson");
     assert!(text(&folder, "l.geojson").contains("EPSG::3857"));
