@@ -94,7 +94,7 @@ mod tests {
                     .zip(0..)
                     .collect();
                 let mut expected = list.clone();
-                expected.sort_by(|a, b| b.0.cmp(&a.0));
+                expected.sort_by_key(|a| std::cmp::Reverse(a.0));
                 let mut sorted = list.clone();
                 sorted.compact_sort_by(|a, b| b.0.cmp(&a.0));
                 assert_eq!(sorted, expected, "{count} {keys}");

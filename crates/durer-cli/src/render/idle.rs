@@ -6,7 +6,7 @@ use crate::idle::{self, Rule};
 use crate::kind::Kind;
 use crate::messages::Messages;
 use crate::options::drawing::Hatch;
-use crate::options::{Shading, Shadows};
+use crate::options::{Samples, Shading, Shadows};
 use crate::render_args::RenderArgs;
 use crate::values::Algorithm;
 use durer::pipeline::{DrawStyle, SurfaceMethod};
@@ -84,22 +84,23 @@ fn of_algorithm(args: &RenderArgs) -> Option<Rule> {
     ))
 }
 
-/// Returns `--aa` for algorithms with a fixed number of samples.
+/// Returns `--aa` for algorithms with one sample per pixel, if it requests more.
 fn of_samples(args: &RenderArgs) -> Option<Rule> {
     use SurfaceMethod::{DepthSort, ScanLineZ, SpanningScanLine};
     let single =
         matches!(algorithm(args), Algorithm::Surfaces(ScanLineZ | SpanningScanLine | DepthSort));
-    single.then_some(("this algorithm has one sample per pixel", &["aa"]))
+    (single && args.picture.aa != Samples::One)
+        .then_some(("this algorithm has one sample per pixel", &["aa"]))
 }
 
 /// Returns options for light, where surfaces have none.
 fn of_shading(args: &RenderArgs) -> Option<Rule> {
     let shading = args.look.shading;
     if matches!(shading, Some(Shading::Unlit)) {
-        return Some((
-            "--shading unlit shows colours without light",
-            &["light", "own_lights", "shadows", "exposure", "environment"],
-        ));
+        let lit: &[&str] = &["light", "own_lights", "exposure", "environment", "shadows"];
+        // Without shadows is what `--shadows none` requests.
+        let idle = if matches!(args.look.shadows, Shadows::None) { &lit[..4] } else { lit };
+        return Some(("--shading unlit shows colours without light", idle));
     }
     matches!(args.look.shadows, Shadows::Rays)
         .then_some(("rays to the lights need no map", &["shadow_map"]))

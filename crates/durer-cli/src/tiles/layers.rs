@@ -282,9 +282,7 @@ impl Placing {
             return Ok(());
         }
         let own = if is_other { feature.srid.map(System::of_code) } else { None };
-        if let Err(why) = Crs::of_system(own.as_ref().unwrap_or(told)) {
-            return Err(why);
-        }
+        Crs::of_system(own.as_ref().unwrap_or(told))?;
         if is_other && self.coordinates == tiles::Coordinates::Mercator {
             return Err("its features are in several coordinate systems".to_owned());
         }

@@ -64,7 +64,7 @@ fn counts_of_thousands_of_millions_are_refused() {
     }
     folder.write("count.ply", ply);
     let read = folder.must("render count.ply -o a.png");
-    assert!(read.err.contains("1 of 1000000000 rows of element `vertex` are read"), "{}", read.err);
+    assert!(read.err.contains("1 of 1000000000 rows of element `vertex` is read"), "{}", read.err);
     folder.write("count.wkb", [1, 2, 0, 0, 0, 255, 255, 255, 255]);
     let clip = "clip count.wkb --window 0,0,1,1 -o a.geojson";
     folder.run(clip).fails(1, "byte 5: a count of 4294967295");

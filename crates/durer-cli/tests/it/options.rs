@@ -154,6 +154,8 @@ fn options_without_effect_are_told() {
         assert!(ended.err.contains(&format!("durer: warning: {told}")), "{options}: {}", ended.err);
     }
     for options in [
+        "a.png --size 8x8 --algorithm depth-sort --aa 1",
+        "a.png --size 8x8 --shading unlit --shadows none",
         "a.svg --light ambient:red --style regions",
         "a.svg --light ambient:red --hatch shade",
         "a.svg --light ambient:red --section 1,0,0,0",

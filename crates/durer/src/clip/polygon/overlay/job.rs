@@ -21,7 +21,7 @@ const PER_EDGE: u64 = 24;
 /// Bytes of the graph and of the result for each node that an edge passes.
 const PER_HIT: u64 = 64;
 
-/// What an overlay is made of.
+/// Input and options of an overlay.
 pub struct Task<'a, P: Vertex> {
     pub subject: &'a Shapes<P>,
     pub clip: &'a Shapes<P>,
