@@ -239,10 +239,7 @@ fn tell(
     }
     match (report.given.features, report.unchosen) {
         (0, 0) => found.push("there is no feature in it".to_owned()),
-        (0, all) => {
-            let all = counted(all, "feature", "features");
-            found.push(format!("none of its {all} meets --where"));
-        }
+        (0, all) => found.push(layer::none_meets(all)),
         (some, _) if report.out.features == 0 && report.broken_off.is_none() => {
             let some = counted(some, "feature", "features");
             found.push(format!("nothing remains of its {some}; durer info tells the extent"));

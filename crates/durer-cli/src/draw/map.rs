@@ -6,7 +6,7 @@ use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, Surface, fonts, is_for_cad, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{FieldArgs, Fields};
+use crate::layer::{FieldArgs, Fields, none_meets};
 use durer::curve::text::Font;
 use durer::map::{self, Label, Map, Style};
 use durer::math::{DVec2, Rect};
@@ -15,7 +15,6 @@ use durer_formats::drawing::DxfFrame;
 use durer_formats::geo::crs::{Crs, Transform};
 use durer_formats::geo::{Beside, Feature, Reader, System};
 use durer_formats::svg::no_glyphs;
-use durer_formats::told::counted;
 use std::time::Instant;
 
 /// Natural Earth's property of how important a label is: small numbers first.
@@ -164,8 +163,7 @@ impl Job<'_> {
             crate::layer::keep(&feature, &self.args.running.work).map_err(|e| fail(e.into()))?;
             features.push(feature);
         }
-        let none = (features.is_empty() && all > 0)
-            .then(|| format!("none of its {} meets --where", counted(all, "feature", "features")));
+        let none = (features.is_empty() && all > 0).then(|| none_meets(all));
         for message in fields.told().into_iter().chain(none) {
             self.messages.warning(&name, &message);
             self.report.warnings.push(message);

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use durer_formats::geo::{Feature, Member};
+use durer_formats::told::agreeing;
 use serde_json::Value;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -73,6 +74,14 @@ const TESTS: [(&str, Test); 9] = [
     (">", Test::More),
     ("~", Test::Contains),
 ];
+
+/// Returns a warning for files of which no feature meets the conditions.
+pub fn none_meets(read: u64) -> String {
+    agreeing(
+        read,
+        "{feature was read, and does not meet|features were read, and none meets} --where",
+    )
+}
 
 /// Reads a condition.
 pub fn condition(text: &str) -> Result<Condition, String> {

@@ -7,7 +7,7 @@ mod sink;
 mod systems;
 mod watched;
 
-pub use fields::{Condition, FieldArgs, Fields, condition};
+pub use fields::{Condition, FieldArgs, Fields, condition, none_meets};
 pub use info::{LayerInfo, of_layers};
 pub use out::{finish, named_format, writer};
 pub use sink::{Sink, failure};

@@ -3,7 +3,7 @@
 use super::args::TilesArgs;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{Fields, Shift, SystemArgs, keep, late, open, packed_names, words};
+use crate::layer::{Fields, Shift, SystemArgs, keep, late, none_meets, open, packed_names, words};
 use crate::messages::Messages;
 use crate::names;
 use crate::options::TileCoordinates;
@@ -228,10 +228,7 @@ fn read_file(
     all.warnings.extend(told.iter().map(|warning| format!("{shown}: {warning}")));
     let none = match (all.read == before, kept) {
         (true, _) => Some("there is no feature in it".to_owned()),
-        (false, 0) => {
-            let features = counted(all.read - before, "feature", "features");
-            Some(format!("none of its {features} meets --where"))
-        }
+        (false, 0) => Some(none_meets(all.read - before)),
         _ => None,
     };
     for message in none.into_iter().chain(doubts.messages()) {

@@ -396,7 +396,7 @@ fn features_are_drawn_that_meet_conditions() {
     assert_eq!(counts("c.geojsonl --where people>10 --where people<1000 c.geojsonl"), [1, 3]);
     assert_eq!(counts("--where people>10 c.geojsonl c.geojsonl --where people!=200"), [2, 1]);
     let ended = folder.must("draw c.geojsonl --where people=1 -o a.png --window 0,0,4,4");
-    assert!(ended.err.contains("none of its 3 features meets --where"), "{}", ended.err);
+    assert!(ended.err.contains("3 features were read, and none meets --where"), "{}", ended.err);
     folder.write("a.svg", SVG);
     folder.run("draw a.svg --where a=1 -o a.png").fails(2, "--where is for map data");
 }

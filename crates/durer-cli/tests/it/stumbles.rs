@@ -56,7 +56,10 @@ fn results_without_content_are_told() {
             "clip a.geojson --window 8,8,9,9 -o o.wkt",
             "a.geojson: nothing remains of its 1 feature; durer info tells the extent",
         ),
-        ("clip a.geojson --where n=2 -o o.wkt", "a.geojson: none of its 1 feature meets --where"),
+        (
+            "clip a.geojson --where n=2 -o o.wkt",
+            "a.geojson: 1 feature was read, and does not meet --where",
+        ),
         (
             "draw a.geojson a.wkt --window 8,8,9,9 -o o.png",
             "nothing of the map is within 8.0,8.0,9.0,9.0",

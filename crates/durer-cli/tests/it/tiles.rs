@@ -432,7 +432,11 @@ fn features_and_fields_are_chosen_as_by_other_commands() {
     assert!(ended.err.contains("no feature has the field roof; there are"), "{}", ended.err);
     let ended =
         folder.must("tiles parcels.geojsonl way.wkt --zoom 0 --where use=wood --exclude size -o v");
-    assert!(ended.err.contains("way.wkt: none of its 2 features meets --where"), "{}", ended.err);
+    assert!(
+        ended.err.contains("way.wkt: 2 features were read, and none meets --where"),
+        "{}",
+        ended.err
+    );
     let found = decode(&folder.read("v/0/0/0.mvt"), 4096);
     assert_eq!((found.len(), found[0].properties.len()), (1, 2));
 }
