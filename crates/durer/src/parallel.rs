@@ -140,3 +140,18 @@ fn for_each(count: usize, f: &(dyn Fn(usize) + Sync)) {
         (0..count).for_each(f);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks lists that chunks do not divide, with fewer and more elements than chunks.
+    #[test]
+    fn each_element_has_its_result() {
+        for count in [0, 1, 2, 31, 33, 127, 1000, 1001, 4099] {
+            let list: Vec<u64> = (0..count).collect();
+            let expected: Vec<u64> = list.iter().map(|i| i * i).collect();
+            assert_eq!(of_each(&list, |i| i * i), expected, "{count}");
+        }
+    }
+}
