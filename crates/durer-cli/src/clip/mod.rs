@@ -104,13 +104,14 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
 pub const MIXED: &str = "heights and measures that some features have and others lack are 0 there";
 
 const NO_MASK: &str = "nothing to clip with: give --window, --by, --cells or --tiles; without these, \
-                       features are only converted to another format, selected (--where) or transformed \
+                       features are only converted to another format, selected (--where, --skip-failures) or transformed \
                        (--to-crs)";
 
 /// Returns whether features are to be changed or written otherwise without being cut.
 fn converts(args: &ClipArgs, from: GeoFormat, to: GeoFormat) -> bool {
-    let systems = &args.systems;
-    from != to || !args.fields.is_idle() || systems.to_crs.is_some() || systems.from_crs.is_some()
+    let (fields, systems) = (&args.fields, &args.systems);
+    let chooses = !fields.is_idle() || fields.skip_failures;
+    from != to || chooses || systems.to_crs.is_some() || systems.from_crs.is_some()
 }
 
 /// Returns whether all polygons become one.

@@ -27,8 +27,8 @@ pub struct FieldArgs {
     pub rename: Vec<(String, String)>,
     /// Leave out features that cannot be read, with a warning that counts them and exit code 3
     ///
-    /// Of GeoJSON, CSV, WKT with a geometry per line, hexadecimal WKB and Shapefiles; other formats, and text that is
-    /// not JSON, show no end of a broken feature.
+    /// Works for GeoJSON, CSV, WKT with a geometry per line, hexadecimal WKB and Shapefiles. In other formats, and in
+    /// text that is not JSON, the end of a broken feature cannot be found.
     #[arg(long)]
     pub skip_failures: bool,
 }

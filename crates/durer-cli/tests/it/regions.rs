@@ -154,7 +154,7 @@ fn broken_features_are_faults_or_left_out() {
     folder.write("a.csv", "id,WKT\n1,POINT (1 2)\n2,POINT (1\n3,POINT (3\n4,POINT (5 6)\n");
     folder.run("clip a.csv -o o.geojson").fails(1, "a.csv: line 3: ");
     assert!(!folder.path("o.geojson").exists());
-    let told = "a.csv: line 3: 2 features cannot be read and are left out; of this one: ";
+    let told = "a.csv: line 3: 2 features cannot be read and are left out; the first: ";
     for command in ["clip a.csv", "fix a.csv", "tiles a.csv --zoom 0"] {
         let out = if command.starts_with("tiles") { "o.pmtiles" } else { "o.geojson" };
         let ended = folder.run(&format!("{command} -o {out} --skip-failures"));
@@ -163,6 +163,9 @@ fn broken_features_are_faults_or_left_out() {
     }
     let text = String::from_utf8(folder.read("o.geojson")).expect("text");
     assert_eq!(text.matches("\"Feature\"").count(), 2, "{text}");
+    // Without another change, too.
+    folder.run("clip a.csv -o o.csv --skip-failures").fails(3, told);
+    folder.run("clip a.csv -o o.csv").fails(2, "--skip-failures");
     let checked = folder.run("check a.csv --json");
     checked.fails(1, "2 reading");
     assert_eq!(checked.json()["counts"]["reading"], 2);

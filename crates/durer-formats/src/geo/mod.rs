@@ -64,18 +64,14 @@ const MAX_DEPTH: usize = 128;
 /// Number of warnings that are kept; the rest is counted.
 const MAX_WARNINGS: usize = 1000;
 
-/// Returns a warning about geometries that cannot be read, with the reason for the first of them.
-fn unread(count: u64, why: &str) -> String {
-    let (one, several) =
-        ("geometry cannot be read and is left out", "geometries cannot be read and are left out");
-    format!("{}; of this one: {why}", crate::told::counted(count, one, several))
-}
+/// Things that cannot be read, for [`unread`].
+const GEOMETRIES: &str = "{geometry cannot be read and is left out|geometries cannot be read and are left out; the first}";
+const FEATURES: &str =
+    "{feature cannot be read and is left out|features cannot be read and are left out; the first}";
 
-/// Returns a warning about features that cannot be read, with the reason for the first of them.
-fn unread_features(count: u64, why: &str) -> String {
-    let (one, several) =
-        ("feature cannot be read and is left out", "features cannot be read and are left out");
-    format!("{}; of this one: {why}", crate::told::counted(count, one, several))
+/// Returns a warning about things that cannot be read, with the reason for the first of them.
+fn unread(count: u64, things: &str, why: &str) -> String {
+    format!("{}: {why}", crate::told::agreeing(count, things))
 }
 
 /// Repairs and omissions while reading, the first thousand of them.

@@ -180,7 +180,7 @@ impl<R: Read> Reader<R> {
             self.warnings.tell();
             let Skipped { count, first, why } = &mut self.skipped;
             if let Some(why) = why.take() {
-                let told = super::unread_features(*count, &why);
+                let told = super::unread(*count, super::FEATURES, &why);
                 self.warnings.push(std::mem::take(first), told);
             }
         }

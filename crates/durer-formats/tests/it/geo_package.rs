@@ -91,7 +91,7 @@ fn geometries_of_all_kinds_are_read_and_bad_ones_told() {
     assert_eq!(
         warnings,
         [
-            "layer lines, row 5: 2 geometries cannot be read and are left out; of this one: byte 0: a geometry must begin with GP and a version of 0",
+            "layer lines, row 5: 2 geometries cannot be read and are left out; the first: byte 0: a geometry must begin with GP and a version of 0",
             "layer lines, row 2: 1 curve is flattened to lines of 32 edges per quarter turn"
         ]
     );

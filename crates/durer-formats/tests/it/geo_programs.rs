@@ -182,7 +182,7 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
         (
             GeoFormat::GeoJson,
             format!(r#"{{"type":"FeatureCollection","features":[{a},{bad},{bad},{b}]}}"#),
-            "line 1, column 202: 2 features cannot be read and are left out; of this one: a number is expected",
+            "line 1, column 202: 2 features cannot be read and are left out; the first: a number is expected",
         ),
         (
             GeoFormat::GeoJsonSeq,

@@ -160,7 +160,7 @@ pub struct Reader<R> {
 /// Coordinate systems of the features, which members `crs` state.
 #[derive(Debug, Default)]
 struct Systems {
-    /// That of the collection, if it is stated before the features.
+    /// The system of the collection, if it is stated before the features.
     collection: Option<System>,
     /// The common one of the features that have been read; unknown if they have several.
     common: Option<System>,

@@ -4,7 +4,7 @@ use super::blob;
 use super::contents::{Contents, Layer, contents};
 use crate::geo::beside::Beside;
 use crate::geo::members::{object, quoted};
-use crate::geo::{Feature, Geometry, Member, System, Warnings, number, unread};
+use crate::geo::{Feature, GEOMETRIES, Geometry, Member, System, Warnings, number, unread};
 use crate::sqlite::{Column, Database, Rows, Value};
 use crate::text::Tally;
 use crate::{Error, Place, Result};
@@ -105,7 +105,7 @@ impl Reader {
             "binary values are left out",
         );
         if faults.geometries.count > 0 {
-            let told = unread(faults.geometries.count, &faults.why);
+            let told = unread(faults.geometries.count, GEOMETRIES, &faults.why);
             warnings.push(faults.geometries.first, told);
         }
     }

@@ -4,7 +4,7 @@ use super::values::{Meaning, json};
 use crate::foreign;
 use crate::geo::beside::Beside;
 use crate::geo::members::object;
-use crate::geo::{Feature, Geometry, Member, System, Warnings, unread, wkb};
+use crate::geo::{Feature, GEOMETRIES, Geometry, Member, System, Warnings, unread, wkb};
 use crate::text::Tally;
 use crate::{Error, Place, Result};
 use parquet::data_type::ByteArray;
@@ -107,7 +107,7 @@ impl Reader {
         let (binary, broken) = (std::mem::take(&mut self.binary), std::mem::take(&mut self.broken));
         warnings.add_counted(binary, "binary value is left out", "binary values are left out");
         if broken.count > 0 {
-            let told = unread(broken.count, &self.why);
+            let told = unread(broken.count, GEOMETRIES, &self.why);
             warnings.push(broken.first, told);
         }
     }
