@@ -40,7 +40,7 @@ impl Dimensions {
     }
 
     /// Returns the ordinates that either of two dimensions has.
-    pub fn with(self, other: Self) -> Self {
+    pub(crate) fn with(self, other: Self) -> Self {
         Self::new(self.has_z() || other.has_z(), self.has_m() || other.has_m())
     }
 
@@ -89,7 +89,7 @@ impl Points {
     }
 
     /// Adds all positions of another list, with the ordinates that either has.
-    pub fn append(&mut self, other: &Self) {
+    pub(crate) fn append(&mut self, other: &Self) {
         if self.is_empty() {
             self.clone_from(other);
             return;

@@ -167,7 +167,7 @@ pub fn powf(x: f32, y: f32) -> f32 {
 }
 
 /// Returns the logarithm to base 2 of a positive finite number; see [`powf`].
-pub fn log2(x: f32) -> f32 {
+pub(crate) fn log2(x: f32) -> f32 {
     let x = f64::from(x);
     let bits = x.to_bits();
     let mut exponent = ((bits >> 52) & 0x7ff) as i64 - 1023;
@@ -186,7 +186,7 @@ pub fn log2(x: f32) -> f32 {
 }
 
 /// Returns two to the power `x`; overflow gives infinity, underflow zero; see [`powf`].
-pub fn exp2(x: f32) -> f32 {
+pub(crate) fn exp2(x: f32) -> f32 {
     if x.is_nan() {
         return x;
     }

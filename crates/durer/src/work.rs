@@ -189,7 +189,7 @@ impl Work {
 
     /// Charges memory like [`Self::keep`] where an error cannot be returned: exceeding the budget stops the work, so
     /// that its next check fails. Returns whether the memory fits.
-    pub fn keep_or_stop(&self, stage: &'static str, bytes: u64) -> bool {
+    pub(crate) fn keep_or_stop(&self, stage: &'static str, bytes: u64) -> bool {
         self.keep(stage, bytes).map_err(|error| self.stop(error)).is_ok()
     }
 

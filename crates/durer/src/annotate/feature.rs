@@ -34,7 +34,7 @@ impl FeatureKind {
     }
 
     /// Returns the kind of a cylinder.
-    pub fn of(cylinder: &Cylinder) -> Self {
+    pub(crate) fn of(cylinder: &Cylinder) -> Self {
         match (cylinder.angle >= HALF, cylinder.hollow) {
             (false, _) => Self::Fillet,
             (true, true) => Self::Hole,
@@ -58,7 +58,7 @@ pub struct Feature {
 
 impl Feature {
     /// Returns the middle of its axis.
-    pub fn middle(&self) -> DVec3 {
+    pub(crate) fn middle(&self) -> DVec3 {
         (self.cylinder.ends[0] + self.cylinder.ends[1]) * 0.5
     }
 }

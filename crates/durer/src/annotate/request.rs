@@ -93,7 +93,7 @@ pub enum Along {
 
 impl Along {
     /// Returns its unit vector; `None` for a straight line.
-    pub fn axis(self) -> Option<DVec3> {
+    pub(crate) fn axis(self) -> Option<DVec3> {
         match self {
             Self::Straight => None,
             Self::X => Some(DVec3::X),
@@ -165,7 +165,7 @@ const COARSE: &[(f64, f64)] = &[
 impl ThreadSize {
     /// Returns the core of the screw, millimetres: the basic minor diameter of ISO 68-1, D − 1.0825
     /// P.
-    pub fn minor(&self) -> f64 {
+    pub(crate) fn minor(&self) -> f64 {
         self.major - 1.082_53 * self.pitch
     }
 }

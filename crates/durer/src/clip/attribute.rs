@@ -27,7 +27,7 @@ pub enum Source {
 impl Source {
     /// Returns the source of a point on the edge between two input points, each given by index and
     /// place.
-    pub fn on_edge(point: DVec2, (from, a): (usize, DVec2), (to, b): (usize, DVec2)) -> Self {
+    pub(crate) fn on_edge(point: DVec2, (from, a): (usize, DVec2), (to, b): (usize, DVec2)) -> Self {
         if point == a {
             return Self::Vertex(from);
         }
@@ -43,7 +43,7 @@ impl Source {
 }
 
 /// A tracer for the sources of output vertices: `Vec<Source>`, or [`NoSources`].
-pub trait Provenance: Default {
+pub(crate) trait Provenance: Default {
     /// Adds the source of the next vertex.
     fn push(&mut self, source: impl FnOnce() -> Source);
     /// Adds input points, one after the other.
@@ -58,7 +58,7 @@ pub trait Provenance: Default {
 
 /// Sources that keep nothing and cost nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct NoSources;
+pub(crate) struct NoSources;
 
 impl Provenance for NoSources {
     #[inline(always)]
@@ -112,7 +112,7 @@ impl Provenance for Vec<Source> {
 /// ```
 ///
 /// `None` if a source names a point that `values` does not have.
-pub fn interpolate<V: Copy>(
+pub(crate) fn interpolate<V: Copy>(
     sources: &[Source],
     values: &[V],
     mut lerp: impl FnMut(V, V, f64) -> V,

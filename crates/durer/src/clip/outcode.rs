@@ -74,7 +74,7 @@ impl Outcode {
 
     /// Creates an outcode whose bit k is set where `inside[k]` is false.
     #[inline]
-    pub fn from_inside<const N: usize>(inside: [bool; N]) -> Self {
+    pub(crate) fn from_inside<const N: usize>(inside: [bool; N]) -> Self {
         Self(inside.iter().rev().fold(0, |bits, &inside| bits << 1 | u8::from(!inside)))
     }
 
@@ -100,7 +100,7 @@ impl Outcode {
 
     /// Returns whether all bits of `other` are set.
     #[inline]
-    pub fn contains(self, other: Self) -> bool {
+    pub(crate) fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 }

@@ -54,7 +54,7 @@ pub struct Patch {
 impl Patch {
     /// Returns the point at two parameters 0 … 1; `None` without control points and if it is not
     /// finite.
-    pub fn point(&self, u: f64, v: f64) -> Option<DVec3> {
+    pub(crate) fn point(&self, u: f64, v: f64) -> Option<DVec3> {
         patch(&self.rows, [u, v], &mut NoTrace).filter(|p| p.is_finite())
     }
 

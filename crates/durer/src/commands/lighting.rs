@@ -183,7 +183,7 @@ impl Light {
     ///
     /// # Errors
     /// [`Error::Parameter`] for one that is not finite or out of its range.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let colors = [self.ambient, self.diffuse, self.specular];
         if !colors.iter().all(|c| c.is_finite())
             || !self.position.is_finite()
@@ -212,7 +212,7 @@ impl Material {
     ///
     /// # Errors
     /// [`Error::Parameter`] for one that is not finite or out of its range.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let colors = [self.ambient, self.diffuse, self.specular, self.emission];
         if !colors.iter().all(|c| c.is_finite()) {
             return Err(Error::parameter("material", "given", "finite"));

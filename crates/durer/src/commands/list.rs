@@ -42,7 +42,7 @@ pub struct ListId(usize);
 
 impl ListId {
     /// Returns the number of the list in its collection, counted from 0.
-    pub const fn number(self) -> usize {
+    pub(crate) const fn number(self) -> usize {
         self.0
     }
 }
@@ -92,7 +92,7 @@ impl DisplayLists {
     ///
     /// # Errors
     /// [`Error::Dangling`] for a list of another collection.
-    pub fn commands(&self, list: ListId) -> Result<&[Command]> {
+    pub(crate) fn commands(&self, list: ListId) -> Result<&[Command]> {
         let count = self.lists.len();
         self.lists.get(list.0).map(Vec::as_slice).ok_or_else(|| dangling(list, count))
     }

@@ -174,7 +174,7 @@ pub enum Command {
 
 impl Command {
     /// Returns whether the command writes pixels; others only change the state.
-    pub const fn draws(&self) -> bool {
+    pub(crate) const fn draws(&self) -> bool {
         matches!(
             self,
             Self::Clear { .. }

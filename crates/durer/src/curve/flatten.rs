@@ -109,7 +109,7 @@ impl Contours {
     }
 
     /// Forgets the contours and keeps the memory.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.points.clear();
         self.ends.clear();
     }

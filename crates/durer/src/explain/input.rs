@@ -108,7 +108,7 @@ impl Input {
     ///
     /// # Errors
     /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
-    pub fn figure(&self, wanted: Word) -> Result<&Figure> {
+    pub(crate) fn figure(&self, wanted: Word) -> Result<&Figure> {
         if let Self::Figure(figure) = self { Ok(figure) } else { Err(self.wrong(wanted)) }
     }
 
@@ -116,7 +116,7 @@ impl Input {
     ///
     /// # Errors
     /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
-    pub fn faces(&self, wanted: Word) -> Result<&[Vec<DVec3>]> {
+    pub(crate) fn faces(&self, wanted: Word) -> Result<&[Vec<DVec3>]> {
         if let Self::Faces(faces) = self { Ok(faces) } else { Err(self.wrong(wanted)) }
     }
 
@@ -124,7 +124,7 @@ impl Input {
     ///
     /// # Errors
     /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
-    pub fn clip_space(&self, wanted: Word) -> Result<&[DVec4]> {
+    pub(crate) fn clip_space(&self, wanted: Word) -> Result<&[DVec4]> {
         if let Self::ClipSpace(points) = self { Ok(points) } else { Err(self.wrong(wanted)) }
     }
 
@@ -132,7 +132,7 @@ impl Input {
     ///
     /// # Errors
     /// [`Error::Parameter`] for another kind of input; the error names `wanted` as the right one.
-    pub fn grid(&self, wanted: Word) -> Result<&Grid> {
+    pub(crate) fn grid(&self, wanted: Word) -> Result<&Grid> {
         if let Self::Grid(grid) = self { Ok(grid) } else { Err(self.wrong(wanted)) }
     }
 
@@ -185,7 +185,7 @@ impl Figure {
 
 impl Grid {
     /// Returns the number of rows.
-    pub fn rows(&self) -> u32 {
+    pub(crate) fn rows(&self) -> u32 {
         (self.cells.len() / (self.columns.max(1) as usize)) as u32
     }
 

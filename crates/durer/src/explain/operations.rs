@@ -126,7 +126,7 @@ impl Tally {
     }
 
     /// Adds the comparisons of the z-buffer, which takes no steps.
-    pub fn add_comparisons(&mut self, counts: Comparisons) {
+    pub(crate) fn add_comparisons(&mut self, counts: Comparisons) {
         self.add(Kind::Compared, counts.compared);
         self.add(Kind::Stored, counts.stored);
     }

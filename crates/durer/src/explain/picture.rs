@@ -85,14 +85,14 @@ pub struct Picture {
 
 impl Picture {
     /// Creates an empty picture with y upwards.
-    pub fn new(extent: [DVec2; 2]) -> Self {
+    pub(crate) fn new(extent: [DVec2; 2]) -> Self {
         let picture_from_input = Some(DAffine2::IDENTITY);
         Self { extent, down: false, grid: None, picture_from_input, marks: Vec::new() }
     }
 
     /// Creates an empty picture around points, with a margin in parts of its size; around the unit square where no
     /// point is finite.
-    pub fn around(points: impl IntoIterator<Item = DVec2>, margin: f64) -> Self {
+    pub(crate) fn around(points: impl IntoIterator<Item = DVec2>, margin: f64) -> Self {
         let around = Rect::around(points);
         let [min, max] = around.map_or([DVec2::ZERO, DVec2::ONE], |r| [r.min(), r.max()]);
         let size = (max - min).max_element();
@@ -101,67 +101,67 @@ impl Picture {
     }
 
     /// Creates a picture of pixels, with their grid and rows downwards.
-    pub fn pixels(columns: u32, rows: u32) -> Self {
+    pub(crate) fn pixels(columns: u32, rows: u32) -> Self {
         let size = DVec2::new(columns.into(), rows.into());
         let extent = [DVec2::splat(-0.2), size + 0.2];
         Self { down: true, grid: Some([columns, rows]), ..Self::new(extent) }
     }
 
     /// Adds a mark on top.
-    pub fn add(&mut self, shape: Shape, look: Look) {
+    pub(crate) fn add(&mut self, shape: Shape, look: Look) {
         self.marks.push(Mark { shape, look });
     }
 
     /// Adds points joined by lines.
-    pub fn chain(&mut self, points: impl Into<Vec<DVec2>>, look: Look) {
+    pub(crate) fn chain(&mut self, points: impl Into<Vec<DVec2>>, look: Look) {
         self.add(Shape::Chain(points.into()), look);
     }
 
     /// Adds a closed curve.
-    pub fn ring(&mut self, points: impl Into<Vec<DVec2>>, look: Look) {
+    pub(crate) fn ring(&mut self, points: impl Into<Vec<DVec2>>, look: Look) {
         self.add(Shape::Rings(vec![points.into()]), look);
     }
 
     /// Adds closed curves that bound one area.
-    pub fn rings(&mut self, rings: &[Vec<DVec2>], look: Look) {
+    pub(crate) fn rings(&mut self, rings: &[Vec<DVec2>], look: Look) {
         self.add(Shape::Rings(rings.to_vec()), look);
     }
 
     /// Adds a rectangle as a closed chain, whose inside stays free.
-    pub fn frame(&mut self, window: &Rect, look: Look) {
+    pub(crate) fn frame(&mut self, window: &Rect, look: Look) {
         let mut corners = corners(window).to_vec();
         corners.push(window.min());
         self.chain(corners, look);
     }
 
     /// Adds a dot.
-    pub fn dot(&mut self, at: DVec2, look: Look) {
+    pub(crate) fn dot(&mut self, at: DVec2, look: Look) {
         self.add(Shape::Dot(at), look);
     }
 
     /// Adds a line with a head at its end.
-    pub fn arrow(&mut self, from: DVec2, to: DVec2, look: Look) {
+    pub(crate) fn arrow(&mut self, from: DVec2, to: DVec2, look: Look) {
         self.add(Shape::Arrow([from, to]), look);
     }
 
     /// Adds a text whose middle is moved from a point by pixels to the right and down.
-    pub fn label(&mut self, at: DVec2, by: (f64, f64), text: impl Into<Value>) {
+    pub(crate) fn label(&mut self, at: DVec2, by: (f64, f64), text: impl Into<Value>) {
         self.add(Shape::Label { at, by: by.into(), text: text.into() }, Look::Window);
     }
 
     /// Adds a dot with a name above it.
-    pub fn named(&mut self, at: DVec2, name: impl Into<Value>, look: Look) {
+    pub(crate) fn named(&mut self, at: DVec2, name: impl Into<Value>, look: Look) {
         self.dot(at, look);
         self.label(at, (0.0, -10.0), name);
     }
 
     /// Adds a pixel in the light colour of a look.
-    pub fn cell(&mut self, at: [i32; 2], text: impl Into<Value>, look: Look) {
+    pub(crate) fn cell(&mut self, at: [i32; 2], text: impl Into<Value>, look: Look) {
         self.add(Shape::Cell { at, color: None, text: text.into() }, look);
     }
 
     /// Adds a pixel in a colour.
-    pub fn colored(&mut self, at: [i32; 2], color: [u8; 3], text: impl Into<Value>) {
+    pub(crate) fn colored(&mut self, at: [i32; 2], color: [u8; 3], text: impl Into<Value>) {
         self.add(Shape::Cell { at, color: Some(color), text: text.into() }, Look::Pale);
     }
 }

@@ -31,12 +31,12 @@ pub struct Cell {
 
 impl Table {
     /// Creates a table without rows.
-    pub fn new<const N: usize>(heads: [Word; N]) -> Self {
+    pub(crate) fn new<const N: usize>(heads: [Word; N]) -> Self {
         Self { heads: heads.into(), rows: Vec::new() }
     }
 
     /// Adds a row at the bottom.
-    pub fn row(&mut self, name: impl Into<Value>, cells: impl IntoIterator<Item = Value>) {
+    pub(crate) fn row(&mut self, name: impl Into<Value>, cells: impl IntoIterator<Item = Value>) {
         let cells = cells.into_iter().map(|value| Cell { value, changed: false }).collect();
         self.rows.push(Row { name: name.into(), cells });
     }

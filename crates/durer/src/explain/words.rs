@@ -160,12 +160,12 @@ pub struct Template {
 
 impl Template {
     /// Creates a template from its translations.
-    pub const fn new(kind: &'static str, en: &'static str, de: &'static str) -> Self {
+    pub(crate) const fn new(kind: &'static str, en: &'static str, de: &'static str) -> Self {
         Self { kind, text: Word::new(en, de) }
     }
 
     /// Returns the caption of the template with values.
-    pub fn with<const N: usize>(&'static self, values: [(&'static str, Value); N]) -> Caption {
+    pub(crate) fn with<const N: usize>(&'static self, values: [(&'static str, Value); N]) -> Caption {
         Caption { template: self, values: values.into() }
     }
 }

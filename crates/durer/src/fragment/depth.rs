@@ -19,13 +19,13 @@ impl Default for DepthRange {
 
 impl DepthRange {
     /// Converts normalized device depth −1…1 to window depth; both ends of the range are clamped to 0…1.
-    pub fn window(&self, ndc: f64) -> f64 {
+    pub(crate) fn window(&self, ndc: f64) -> f64 {
         let (near, far) = self.held();
         ndc * ((far - near) * 0.5) + (near + far) * 0.5
     }
 
     /// Returns a window depth clamped to the range. NaN becomes the nearer end.
-    pub fn clamp(&self, depth: f32) -> f32 {
+    pub(crate) fn clamp(&self, depth: f32) -> f32 {
         let (near, far) = self.held();
         let (low, high) = (near.min(far) as f32, near.max(far) as f32);
         if depth > high {
@@ -60,7 +60,7 @@ impl PolygonOffset {
     /// `slope` is the change of depth per pixel along x and y, `deepest` the largest absolute depth of
     /// its vertices: for a floating-point depth plane the smallest difference is 2^(e − 23), e being the
     /// exponent of that depth.
-    pub fn offset(&self, slope: [f32; 2], deepest: f32) -> f32 {
+    pub(crate) fn offset(&self, slope: [f32; 2], deepest: f32) -> f32 {
         let steepest = slope[0].abs().max(slope[1].abs());
         let smallest = f32::from_bits(deepest.abs().max(f32::MIN_POSITIVE).to_bits() & 0x7f80_0000)
             * (1.0 / 8_388_608.0);

@@ -24,20 +24,20 @@ impl Default for WriteMask {
 impl WriteMask {
     /// Returns the new channels where they may be written, the old ones elsewhere.
     #[inline(always)]
-    pub fn color(&self, new: [u8; 4], old: [u8; 4]) -> [u8; 4] {
+    pub(crate) fn color(&self, new: [u8; 4], old: [u8; 4]) -> [u8; 4] {
         std::array::from_fn(|i| if self.color[i] { new[i] } else { old[i] })
     }
 
     /// Returns the new stencil bits where they may be written, the old ones elsewhere.
     #[inline(always)]
-    pub fn stencil(&self, front_facing: bool, new: u8, old: u8) -> u8 {
+    pub(crate) fn stencil(&self, front_facing: bool, new: u8, old: u8) -> u8 {
         let mask = self.stencil[usize::from(!front_facing)];
         (new & mask) | (old & !mask)
     }
 
     /// Returns the new bits of a colour index where they may be written, the old ones elsewhere.
     #[inline(always)]
-    pub fn index(&self, new: u8, old: u8) -> u8 {
+    pub(crate) fn index(&self, new: u8, old: u8) -> u8 {
         (new & self.index) | (old & !self.index)
     }
 }

@@ -45,7 +45,7 @@ pub fn fitted(dashes: &[f64], length: f64, closed: bool) -> Option<Vec<f64>> {
 
 /// Divides a chain at its corners, so that the dashes of each part meet there. A closed chain without
 /// corners comes back closed.
-pub fn at_corners(points: &[DVec2], closed: bool) -> Vec<(Vec<DVec2>, bool)> {
+pub(crate) fn at_corners(points: &[DVec2], closed: bool) -> Vec<(Vec<DVec2>, bool)> {
     let count = points.len();
     let corner = |i: usize| {
         let (Some(a), Some(b), Some(c)) =

@@ -51,7 +51,7 @@ pub enum Hidden {
 }
 
 /// Hidden lines behind more surfaces than this share a layer.
-pub const DEEPEST: u32 = 9;
+pub(crate) const DEEPEST: u32 = 9;
 
 /// Part of the plane that the paper shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -122,7 +122,7 @@ impl Options {
     ///
     /// # Errors
     /// [`Error::Parameter`] for a margin or a fit below 0, or a unit or scale that is not above 0.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         if !(self.margin >= 0.0 && self.margin <= LARGEST) {
             return Err(Error::parameter("margin", self.margin, "at least 0 mm"));
         }

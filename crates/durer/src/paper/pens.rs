@@ -74,13 +74,13 @@ impl Pens {
     }
 
     /// Returns the pen for visible lines of a class.
-    pub fn visible(&self, class: LineClass) -> Pen {
+    pub(crate) fn visible(&self, class: LineClass) -> Pen {
         Pen { width: self.width(class), color: self.color, dashes: Vec::new() }
     }
 
     /// Returns the pen for visible lines of a class at a step of
     /// [`crate::target::drawing::Drawing::nearness`]: the nearer, the wider and darker.
-    pub fn at_nearness(&self, class: LineClass, step: Option<u8>) -> Pen {
+    pub(crate) fn at_nearness(&self, class: LineClass, step: Option<u8>) -> Pen {
         let pen = self.visible(class);
         let Some((factor, fade)) = step.and_then(|s| NEARNESS.get(usize::from(s))) else {
             return pen;
@@ -92,13 +92,13 @@ impl Pens {
 
     /// Returns the widest of its pens for visible lines, millimetres: with that for contours or
     /// without.
-    pub fn widest(&self, contours: bool) -> f64 {
+    pub(crate) fn widest(&self, contours: bool) -> f64 {
         let some = LineClass::ALL.iter().filter(|c| contours || **c != LineClass::Contour);
         some.map(|c| self.width(*c)).fold(0.0, f64::max)
     }
 
     /// Returns the pen for hidden lines: no wider than the class's own.
-    pub fn hidden(&self, class: LineClass, dashed: bool) -> Pen {
+    pub(crate) fn hidden(&self, class: LineClass, dashed: bool) -> Pen {
         let width = self.hidden.min(self.width(class));
         if dashed {
             let unit = width.max(THINNEST_DASHED);

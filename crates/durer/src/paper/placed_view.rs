@@ -45,7 +45,7 @@ impl PlacedView {
 
     /// Returns the point of the plane that is drawn at a place of the sheet, as the view sees it without its
     /// breaks.
-    pub fn plane_from_sheet(&self, at: DVec2) -> DVec2 {
+    pub(crate) fn plane_from_sheet(&self, at: DVec2) -> DVec2 {
         let off = (at - self.origin) / self.factor;
         self.breaks.seen_at(DVec2::new(off.x, -off.y))
     }

@@ -155,12 +155,12 @@ pub struct Places<'a> {
 
 impl<'a> Places<'a> {
     /// Creates the positions of no vertices.
-    pub fn new(view: &'a View) -> Self {
+    pub(crate) fn new(view: &'a View) -> Self {
         Self { view, any: false, beyond_all: None, behind_all: true }
     }
 
     /// Adds the vertices of a scene, or of the next piece of one.
-    pub fn add(&mut self, scene: &Scene) {
+    pub(crate) fn add(&mut self, scene: &Scene) {
         for p in drawn_vertices(scene) {
             self.any = true;
             if !p.is_finite() {
@@ -174,7 +174,7 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the status that follows from them; `None` if some may be visible.
-    pub fn status(&self) -> Option<Status> {
+    pub(crate) fn status(&self) -> Option<Status> {
         if !self.any {
             return Some(Status::Empty);
         }

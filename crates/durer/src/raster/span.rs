@@ -14,7 +14,7 @@ pub struct Span {
 impl Span {
     /// Calls `emit` with the columns of row `y`, unless they are empty.
     #[inline]
-    pub fn emit_unless_empty(y: i32, x0: i32, x1: i32, emit: &mut impl FnMut(Self)) {
+    pub(crate) fn emit_unless_empty(y: i32, x0: i32, x1: i32, emit: &mut impl FnMut(Self)) {
         if x0 < x1 {
             emit(Self { y, x0, x1 });
         }

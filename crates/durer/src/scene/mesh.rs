@@ -78,7 +78,7 @@ impl Mesh {
     }
 
     /// Returns the size of its attributes, indices, parts and faces in bytes.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let sets: usize = self.tex_coords.iter().map(|set| size_of_val(&set[..])).sum();
         let bytes = size_of_val(&self.positions[..])
             + size_of_val(&self.normals[..])
@@ -141,7 +141,7 @@ impl Mesh {
     }
 
     /// Returns the ends of line `i`, or twice the vertex of point `i`; `i < primitive_count()`.
-    pub fn line_or_point(&self, i: usize) -> [u32; 2] {
+    pub(crate) fn line_or_point(&self, i: usize) -> [u32; 2] {
         let index = |i: usize| self.indices.as_ref().map_or(i as u32, |indices| indices[i]);
         match self.topology {
             Topology::Points => [index(i); 2],
@@ -150,14 +150,14 @@ impl Mesh {
     }
 
     /// Returns the runs of primitives with one material; none is empty unless the mesh is.
-    pub fn material_runs(&self) -> impl Iterator<Item = (Range<u32>, Option<usize>)> + '_ {
+    pub(crate) fn material_runs(&self) -> impl Iterator<Item = (Range<u32>, Option<usize>)> + '_ {
         let whole = self.parts.is_empty().then(|| (0..self.primitive_count() as u32, None));
         self.parts.iter().map(|p| (p.range.clone(), p.material)).chain(whole)
     }
 
     /// Returns, for each vertex, whether an index refers to it; `None` if there are no indices, so that all vertices
     /// are used. Indices beyond the vertices are ignored. Cost: O(indices).
-    pub fn used_vertices(&self) -> Option<Vec<bool>> {
+    pub(crate) fn used_vertices(&self) -> Option<Vec<bool>> {
         let indices = self.indices.as_ref()?;
         let mut used = vec![false; self.positions.len()];
         for &i in indices {

@@ -65,7 +65,7 @@ const SHARPEST: f32 = 0.12;
 
 impl Environment {
     /// Creates an environment with the same light from everywhere.
-    pub fn uniform(ambient: Vec3) -> Self {
+    pub(crate) fn uniform(ambient: Vec3) -> Self {
         Self {
             up: Vec3::Y,
             ambient,

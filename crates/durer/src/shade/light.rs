@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Ambient light, as a part of white, that is added if the lights include none; without it, surfaces that no light
 /// reaches would be black. Give [`LightKind::Ambient`] with colour zero to prevent it.
-pub const DEFAULT_AMBIENT: f32 = 0.1;
+pub(crate) const DEFAULT_AMBIENT: f32 = 0.1;
 
 /// A light from infinitely far away.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +84,7 @@ impl PreparedLights {
 
     /// Builds it like [`Self::new`], with a panorama, if there is one, in place of ambient light that is
     /// not among the lights, and of the reflection in mirrors.
-    pub fn within(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
+    pub(crate) fn within(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
         let mut prepared = Self::without_ambient(around, lights, camera);
         prepared.surround(ambient(lights), 1.0, Vec3::ZERO);
         prepared
@@ -194,7 +194,7 @@ pub(super) fn ambient(lights: &[Light]) -> Option<Vec3> {
 impl PointLight {
     /// Returns the unit vector along the axis of a spot light and the cosine of its outer angle; `None` for a light
     /// that shines everywhere.
-    pub fn cone(&self) -> Option<(Vec3, f32)> {
+    pub(crate) fn cone(&self) -> Option<(Vec3, f32)> {
         (self.axis != Vec3::ZERO).then(|| (self.axis, -self.offset / self.scale))
     }
 
@@ -217,7 +217,7 @@ impl PointLight {
 ///
 /// White matte surfaces stay below white, and no side is black: on a matte sphere of reflectance 0.8 the 8-bit colours
 /// are between 76 and 220.
-pub fn auto_lights(camera: &Camera) -> Vec<Light> {
+pub(crate) fn auto_lights(camera: &Camera) -> Vec<Light> {
     let [right, up, back] = camera.axes();
     let from = |x: f64, y: f64, z: f64, intensity: f32| {
         let direction = -(right * x + up * y + back * z).normalize_or_zero();

@@ -240,7 +240,7 @@ impl<'a> PreparedMaterial<'a> {
     }
 
     /// Returns the alpha of a point, equal to that of [`shade`], without lighting it.
-    pub fn alpha(&self, surface: &Surface<'_>) -> f32 {
+    pub(crate) fn alpha(&self, surface: &Surface<'_>) -> f32 {
         self.coverage(self.base(surface).w)
     }
 

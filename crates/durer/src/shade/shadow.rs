@@ -148,7 +148,7 @@ impl ShadowMap {
     ///
     /// `face` is the unit normal of the surface, turned to the light's side.
     #[inline]
-    pub fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
+    pub(crate) fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
         self.reach_traced(position, face, &mut NoTrace)
     }
 
@@ -217,7 +217,7 @@ pub struct ShadowMaps {
 
 impl ShadowMaps {
     /// Returns whether there are no maps.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.directional.is_empty() && self.points.is_empty()
     }
 }

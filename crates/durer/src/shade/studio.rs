@@ -75,7 +75,7 @@ const SPREAD: f32 = 1.1;
 
 impl Studio {
     /// Returns the studio that follows a camera.
-    pub fn of_camera(camera: &Camera) -> Self {
+    pub(crate) fn of_camera(camera: &Camera) -> Self {
         let [right, up, back] = camera.axes();
         let unit = |v: DVec3, otherwise: DVec3| v.normalize_or(otherwise).as_vec3();
         Self { axes: [unit(right, DVec3::X), unit(up, DVec3::Y), unit(back, DVec3::Z)] }

@@ -27,7 +27,7 @@ impl Arc {
     }
 
     /// Returns the derivative at an angle, in the direction of the arc.
-    pub fn way(&self, angle: f64) -> DVec2 {
+    pub(crate) fn way(&self, angle: f64) -> DVec2 {
         let (sin, cos) = libm::sincos(angle);
         let way = self.axis.perp() * (self.ratio * cos) - self.axis * sin;
         if self.turn < 0.0 { -way } else { way }
@@ -105,7 +105,7 @@ impl Curve {
 
     /// Returns the curve, run through from its end to its start.
     #[must_use]
-    pub fn reversed(self) -> Self {
+    pub(crate) fn reversed(self) -> Self {
         let back = |(start, piece): (DVec2, &Piece)| match *piece {
             Piece::Line(_) => Piece::Line(start),
             Piece::Arc(arc, _) => {

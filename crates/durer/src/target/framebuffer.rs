@@ -130,7 +130,7 @@ impl<T: Copy> Pixels<T> {
     }
 
     /// Turns the order of the rows over.
-    pub fn reverse_rows(&mut self) {
+    pub(crate) fn reverse_rows(&mut self) {
         let width = (self.width as usize).max(1);
         let rows = self.data.len() / width;
         for y in 0..rows / 2 {

@@ -56,7 +56,7 @@ pub struct Gradient {
 impl Gradient {
     /// Returns the colour of a gradient that shows a single one, as SVG says: that of its last stop if it has no finite
     /// extent, no other stop, or no inverse of `map`, its map to the target; a transparent one if it has no stops.
-    pub fn only_color(&self, map: DAffine2) -> Option<[u8; 4]> {
+    pub(crate) fn only_color(&self, map: DAffine2) -> Option<[u8; 4]> {
         let Some((_, last)) = self.stops.last() else { return Some([0; 4]) };
         let is_flat = match self.shape {
             Shape::Linear { start, end } => start == end || !(start + end).is_finite(),
@@ -85,7 +85,7 @@ impl Gradient {
     /// let expected = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(3.0, 0.0) };
     /// assert_eq!((larger.shape, larger.transform), (expected, DAffine2::IDENTITY));
     /// ```
-    pub fn mapped(&self, map: DAffine2) -> Self {
+    pub(crate) fn mapped(&self, map: DAffine2) -> Self {
         let map = map * self.transform;
         let (shape, transform) = match self.shape {
             Shape::Linear { start, end } => {

@@ -137,7 +137,7 @@ pub struct SheetLayer {
 
 impl Mark {
     /// Returns whether the mark is an area, which covers the marks beneath.
-    pub const fn is_area(&self) -> bool {
+    pub(crate) const fn is_area(&self) -> bool {
         matches!(self, Self::Fill { .. } | Self::Area { .. } | Self::Gradient(_))
     }
 }

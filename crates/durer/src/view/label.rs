@@ -145,7 +145,7 @@ impl Placer {
 
     /// Takes the first of the candidates all of whose parts are free and within the bounds, as of a label along a line;
     /// returns its number. Parts of one candidate may overlap.
-    pub fn place_parts(
+    pub(crate) fn place_parts(
         &mut self,
         candidates: impl IntoIterator<Item = Vec<Rect>>,
     ) -> Option<usize> {
@@ -159,7 +159,7 @@ impl Placer {
     }
 
     /// Keeps labels off a place, which others may be kept off too.
-    pub fn reserve(&mut self, place: Rect) {
+    pub(crate) fn reserve(&mut self, place: Rect) {
         self.take(place);
     }
 

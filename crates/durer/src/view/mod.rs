@@ -79,7 +79,7 @@ impl View {
 
     /// Returns the same view with a window: pictures have only these pixels of the screen, as they are in the whole one.
     /// Parts beyond the screen are cut off.
-    pub fn with_window(self, window: PixelRect) -> Self {
+    pub(crate) fn with_window(self, window: PixelRect) -> Self {
         Self { window: window.intersection(&screen(self.width, self.height)), ..self }
     }
 

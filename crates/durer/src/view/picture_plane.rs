@@ -18,7 +18,7 @@ pub struct PlanePoint {
 
 /// Borders of the view volume at which faces and lines are clipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Borders {
+pub(crate) struct Borders {
     /// True to clip at the near and the far plane.
     pub depth: bool,
     /// Factor (at least 1) by which the window is widened before its sides clip; `None` to clip at no sides.
@@ -76,7 +76,7 @@ impl PicturePlane {
     }
 
     /// Returns the window of the plane that the view shows, in plane units.
-    pub fn window(&self) -> Option<Rect> {
+    pub(crate) fn window(&self) -> Option<Rect> {
         Rect::new(-self.half, self.half).ok()
     }
 
@@ -86,18 +86,18 @@ impl PicturePlane {
     }
 
     /// Returns the position of the eye, world space; for parallel projection, a point in front.
-    pub fn eye(&self) -> DVec3 {
+    pub(crate) fn eye(&self) -> DVec3 {
         self.eye
     }
 
     /// Returns the direction of the line of sight through a point of the world; not of unit length in perspective.
-    pub fn sight_at(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn sight_at(&self, p: DVec3) -> DVec3 {
         if self.perspective { p - self.eye } else { self.axes[2] }
     }
 
     /// Converts from world space to view space: right, up, distance from the eye.
     #[inline]
-    pub fn view_from_world(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn view_from_world(&self, p: DVec3) -> DVec3 {
         let d = p - self.eye;
         let [right, up, sight] = self.axes;
         DVec3::new(right.dot(d), up.dot(d), sight.dot(d))
@@ -105,7 +105,7 @@ impl PicturePlane {
 
     /// Projects from view space to the plane; in perspective only for points in front of the eye.
     #[inline]
-    pub fn plane_from_view(&self, p: DVec3) -> PlanePoint {
+    pub(crate) fn plane_from_view(&self, p: DVec3) -> PlanePoint {
         if self.perspective {
             let scale = self.distance / p.z;
             PlanePoint { at: p.truncate() * scale, depth: (p.z - self.distance) * scale }
@@ -121,7 +121,7 @@ impl PicturePlane {
     }
 
     /// Returns whether a point of the world is not before the near plane.
-    pub fn is_behind_near(&self, p: DVec3) -> bool {
+    pub(crate) fn is_behind_near(&self, p: DVec3) -> bool {
         self.view_from_world(p).z >= self.near
     }
 
@@ -133,13 +133,13 @@ impl PicturePlane {
 
     /// Projects the part of a segment of the world that is behind the near plane; `None` if all of it is before that
     /// plane.
-    pub fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
+    pub(crate) fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
         let ends = cut(|p| self.inside(0, p, 1.0), [a, b].map(|p| self.view_from_world(p)))?;
         Some(ends.map(|p| self.plane_from_view(p).at))
     }
 
     /// Converts back from the plane to view space.
-    pub fn view_from_plane(&self, p: PlanePoint) -> DVec3 {
+    pub(crate) fn view_from_plane(&self, p: PlanePoint) -> DVec3 {
         if self.perspective {
             let w = self.distance * self.distance / (self.distance - p.depth);
             (p.at * (w / self.distance)).extend(w)
@@ -149,7 +149,7 @@ impl PicturePlane {
     }
 
     /// Converts back from the plane to world space.
-    pub fn world_from_plane(&self, p: PlanePoint) -> DVec3 {
+    pub(crate) fn world_from_plane(&self, p: PlanePoint) -> DVec3 {
         let v = self.view_from_plane(p);
         let [right, up, sight] = self.axes;
         self.eye + right * v.x + up * v.y + sight * v.z
@@ -177,13 +177,13 @@ impl PicturePlane {
 
     /// Returns whether a point of view space is inside the borders.
     #[inline]
-    pub fn contains(&self, p: DVec3, borders: Borders) -> bool {
+    pub(crate) fn contains(&self, p: DVec3, borders: Borders) -> bool {
         Self::borders(borders).all(|b| self.inside(b, p, borders.sides.unwrap_or(1.0)) >= 0.0)
     }
 
     /// Returns the part of a segment in view space inside the borders. Both directions of a segment yield the same
     /// points.
-    pub fn clip_segment(&self, ends: [DVec3; 2], borders: Borders) -> Option<[DVec3; 2]> {
+    pub(crate) fn clip_segment(&self, ends: [DVec3; 2], borders: Borders) -> Option<[DVec3; 2]> {
         let mut ends = ends;
         for border in Self::borders(borders) {
             ends = cut(|p| self.inside(border, p, borders.sides.unwrap_or(1.0)), ends)?;
@@ -193,7 +193,7 @@ impl PicturePlane {
 
     /// Returns the part of a convex polygon in view space inside the borders, border by border (Sutherland–Hodgman).
     /// Neighbours that share an edge share its cut points. Empty if nothing remains.
-    pub fn clip_face(&self, corners: &[DVec3], borders: Borders) -> Vec<DVec3> {
+    pub(crate) fn clip_face(&self, corners: &[DVec3], borders: Borders) -> Vec<DVec3> {
         let mut ring = corners.to_vec();
         for border in Self::borders(borders) {
             let d = |p: DVec3| self.inside(border, p, borders.sides.unwrap_or(1.0));

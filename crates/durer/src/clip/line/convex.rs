@@ -64,12 +64,12 @@ impl ConvexPolygon {
     }
 
     /// Returns the vertices, counter-clockwise.
-    pub fn vertices(&self) -> &[DVec2] {
+    pub(crate) fn vertices(&self) -> &[DVec2] {
         &self.vertices
     }
 
     /// Returns the edges, each with the inside on its left.
-    pub fn edges(&self) -> Vec<Edge> {
+    pub(crate) fn edges(&self) -> Vec<Edge> {
         pairs(&self.vertices).map(|(from, to)| Edge { from, to }).collect()
     }
 }

@@ -106,7 +106,7 @@ impl Area {
     }
 
     /// Returns the clipped area, with the sources of new vertices as far as they are known.
-    pub fn cut(&self, shapes: Shapes, sources: &[Source]) -> Self {
+    pub(crate) fn cut(&self, shapes: Shapes, sources: &[Source]) -> Self {
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
         }
@@ -121,7 +121,7 @@ impl Area {
     }
 
     /// Returns this area after an overlay in which it was the subject.
-    pub fn overlaid(&self, output: &Output) -> Self {
+    pub(crate) fn overlaid(&self, output: &Output) -> Self {
         let shapes = output.shapes.clone();
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };

@@ -79,12 +79,12 @@ impl Mask {
     }
 
     /// Returns whether it may have a point in common with anything in a box.
-    pub fn meets(&self, bounds: &Rect) -> bool {
+    pub(crate) fn meets(&self, bounds: &Rect) -> bool {
         self.polygons.bounds().is_some_and(|own| own.overlaps(bounds))
     }
 
     /// Returns whether a box is wholly inside; `None` if the mask's border comes near.
-    pub fn side(&self, bounds: &Rect) -> Option<bool> {
+    pub(crate) fn side(&self, bounds: &Rect) -> Option<bool> {
         if !self.meets(bounds) {
             return Some(false);
         }
@@ -96,7 +96,7 @@ impl Mask {
     }
 
     /// Returns its polygons, prepared for many geometries.
-    pub fn prepared(&self) -> &Prepared {
+    pub(crate) fn prepared(&self) -> &Prepared {
         &self.polygons
     }
 
@@ -106,7 +106,7 @@ impl Mask {
     }
 
     /// Returns whether a point is inside it or on its border.
-    pub fn contains(&self, p: DVec2) -> bool {
+    pub(crate) fn contains(&self, p: DVec2) -> bool {
         match self.window {
             Some(window) => window.contains(p),
             None => self.polygons.contains(p),
@@ -114,7 +114,7 @@ impl Mask {
     }
 
     /// Returns the polygons near a box; many are clipped to its surroundings.
-    pub fn near(&self, bounds: &Rect) -> Shapes {
+    pub(crate) fn near(&self, bounds: &Rect) -> Shapes {
         /// Cutting fewer points away saves nothing.
         const FEW: usize = 64;
         let margin = bounds.size() * (1.0 / 64.0) + bounds.max().abs() * 1e-9;

@@ -61,7 +61,7 @@ impl<P> Shapes<P> {
     }
 
     /// Removes all polygons; the memory stays.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.points.clear();
         self.ring_ends.clear();
         self.polygon_ends.clear();
@@ -100,14 +100,14 @@ impl<P> Shapes<P> {
     }
 
     /// Returns the index of the point that follows a point on its ring, around its end.
-    pub fn next_point(&self, index: usize) -> usize {
+    pub(crate) fn next_point(&self, index: usize) -> usize {
         let ring = self.ring_ends.partition_point(|&end| end <= index);
         let range = self.ring_range(ring);
         if index + 1 < range.end { index + 1 } else { range.start }
     }
 
     /// Returns the index of the point that precedes a point on its ring, around its start.
-    pub fn previous_point(&self, index: usize) -> usize {
+    pub(crate) fn previous_point(&self, index: usize) -> usize {
         let ring = self.ring_ends.partition_point(|&end| end <= index);
         let range = self.ring_range(ring);
         if index > range.start { index - 1 } else { range.end.saturating_sub(1) }

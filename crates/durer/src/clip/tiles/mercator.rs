@@ -6,7 +6,7 @@ use crate::math::DVec2;
 use std::f64::consts::PI;
 
 /// Half the circumference of the sphere of Web Mercator, in metres: where EPSG:3857 ends on all sides.
-pub const HALF_WORLD: f64 = PI * 6_378_137.0;
+pub(crate) const HALF_WORLD: f64 = PI * 6_378_137.0;
 
 /// Latitude at which points nearer to a pole are placed, far beyond the square: the pole itself is
 /// infinitely far away.
@@ -29,18 +29,18 @@ pub fn project(degrees: DVec2) -> DVec2 {
 }
 
 /// Returns the longitude and latitude in degrees of a place.
-pub fn unproject(place: DVec2) -> DVec2 {
+pub(crate) fn unproject(place: DVec2) -> DVec2 {
     DVec2::new((place.x - 0.5) * 360.0, latitude(1.0 - 2.0 * place.y))
 }
 
 /// Returns the latitude in degrees at a height of the square, 1 at its upper border and −1 at its
 /// lower one.
-pub fn latitude(part: f64) -> f64 {
+pub(crate) fn latitude(part: f64) -> f64 {
     libm::atan(libm::sinh(part * PI)).to_degrees()
 }
 
 /// Returns the place of coordinates of EPSG:3857, in metres.
-pub fn of_metres(metres: DVec2) -> DVec2 {
+pub(crate) fn of_metres(metres: DVec2) -> DVec2 {
     let part = metres / (2.0 * HALF_WORLD);
     DVec2::new(part.x + 0.5, 0.5 - part.y)
 }

@@ -70,7 +70,7 @@ impl Tile {
     /// let ids = Tile::WORLD.children().map(Tile::id);
     /// assert_eq!(ids, [1, 2, 3, 4]);
     /// ```
-    pub fn children(self) -> [Self; 4] {
+    pub(crate) fn children(self) -> [Self; 4] {
         let (zoom, x, y) = (self.zoom + 1, 2 * self.x, 2 * self.y);
         let mut children =
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { zoom, x: x + i, y: y + j });
@@ -87,7 +87,7 @@ impl Tile {
     }
 
     /// Returns the number of tiles of a level in this one; 1 if the level is not finer.
-    pub fn count_at(self, zoom: u8) -> u64 {
+    pub(crate) fn count_at(self, zoom: u8) -> u64 {
         1 << (2 * u32::from(zoom.saturating_sub(self.zoom).min(31)))
     }
 }

@@ -54,7 +54,7 @@ impl Body {
     }
 
     /// Returns all points, to be moved in place.
-    pub fn points_mut(&mut self) -> &mut [DVec2] {
+    pub(crate) fn points_mut(&mut self) -> &mut [DVec2] {
         match self {
             Self::Points(points) | Self::Lines { points, .. } => points,
             Self::Areas(shapes) => shapes.points_mut(),
@@ -65,7 +65,7 @@ impl Body {
     ///
     /// # Errors
     /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
-    pub fn clip(&self, window: &Rect) -> Result<Option<Self>> {
+    pub(crate) fn clip(&self, window: &Rect) -> Result<Option<Self>> {
         let part = match self {
             Self::Points(points) => {
                 Self::Points(points.iter().copied().filter(|p| window.contains(*p)).collect())
@@ -109,7 +109,7 @@ impl Body {
 
 impl Shape {
     /// Returns whether there is nothing of it.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         match self {
             Self::Points(points) => points.is_empty(),
             Self::Lines(lines) => lines.is_empty(),
@@ -145,7 +145,7 @@ impl Shape {
     }
 
     /// Returns the geometry with coordinates of f64.
-    pub fn to_body(&self) -> Body {
+    pub(crate) fn to_body(&self) -> Body {
         let float = |p: &I64Vec2| p.as_dvec2();
         match self {
             Self::Points(points) => Body::Points(points.iter().map(float).collect()),

@@ -20,7 +20,7 @@ pub struct Break {
 
 impl Break {
     /// Returns the axis, of unit length.
-    pub fn axis(&self) -> DVec3 {
+    pub(crate) fn axis(&self) -> DVec3 {
         DVec3::AXES[self.axis]
     }
 
@@ -103,7 +103,7 @@ impl Breaks {
     }
 
     /// Returns whether there are none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.breaks.is_empty()
     }
 

@@ -36,7 +36,7 @@ pub struct Stroke {
 
 /// A stroke in the order of drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Turn {
+pub(crate) struct Turn {
     /// Index of the stroke.
     pub index: usize,
     /// The point that it is begun at: of open strokes the first or the last.
@@ -72,7 +72,7 @@ impl Stroke {
 /// let order = turns(&[along(20.0, 11.0), along(0.0, 10.0)], DVec2::ZERO);
 /// assert_eq!(order, [Turn { index: 1, first: 0 }, Turn { index: 0, first: 1 }]);
 /// ```
-pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
+pub(crate) fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     let found = greedy::turns(strokes, start);
     let mut ends = Ends::new(strokes, &found, start);
     let mut way = improve::Way::new(found.len());
@@ -87,7 +87,7 @@ pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
 
 /// Returns the strokes themselves in the order of [`turns`], joined where one begins at the end of
 /// another.
-pub fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
+pub(crate) fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
     let turns = turns(&strokes, start);
     let mut take = |t: Turn| Some(std::mem::take(strokes.get_mut(t.index)?).begun_at(t.first));
     joined(turns.into_iter().filter_map(&mut take).collect())
@@ -100,7 +100,7 @@ pub fn ordered_chains(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
 }
 
 /// Makes one stroke of open ones that follow each other without a gap.
-pub fn joined(strokes: Vec<Stroke>) -> Vec<Stroke> {
+pub(crate) fn joined(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let mut found: Vec<Stroke> = Vec::with_capacity(strokes.len());
     for stroke in strokes {
         match found.last_mut() {

@@ -16,7 +16,7 @@ use crate::trace::Tracer;
 pub use super::Options;
 
 /// The facts about Wu's lines.
-pub const WU: Info = Info {
+pub(crate) const WU: Info = Info {
     name: "wu",
     title: "Wu's anti-aliased lines",
     authors: "X. Wu",

@@ -56,7 +56,7 @@ pub enum Pattern {
 
 impl Pattern {
     /// Returns the number that the paper gives it.
-    pub const fn number(self) -> u8 {
+    pub(crate) const fn number(self) -> u8 {
         match self {
             Self::Straight => 1,
             Self::Second => 2,
@@ -126,7 +126,7 @@ impl Step {
     }
 
     /// Returns the pixels that the step lights.
-    pub fn pixels(&self) -> &[IVec2] {
+    pub(crate) fn pixels(&self) -> &[IVec2] {
         match self {
             Self::Start { pixel, .. } | Self::Last { pixel, .. } => std::slice::from_ref(pixel),
             Self::Pair { pixels, .. } => pixels,

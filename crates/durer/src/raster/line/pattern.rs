@@ -67,7 +67,7 @@ impl Default for Options {
 
 impl Options {
     /// Returns whether the pen is down at a step.
-    pub fn is_down(&self, step: u64) -> bool {
+    pub(crate) fn is_down(&self, step: u64) -> bool {
         let bit = (self.offset.wrapping_add(step) / u64::from(self.repeat.max(1))) % 16;
         self.pattern >> bit & 1 == 1
     }

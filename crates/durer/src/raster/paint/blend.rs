@@ -51,7 +51,7 @@ pub enum Blend {
 
 impl Blend {
     /// Returns B(Cb, Cs) of straight colours 0 … 1.
-    pub fn mix(self, backdrop: [f32; 3], layer: [f32; 3]) -> [f32; 3] {
+    pub(crate) fn mix(self, backdrop: [f32; 3], layer: [f32; 3]) -> [f32; 3] {
         let each = |f: fn(f32, f32) -> f32| std::array::from_fn(|i| f(backdrop[i], layer[i]));
         match self {
             Self::Normal => layer,

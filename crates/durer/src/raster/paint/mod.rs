@@ -171,7 +171,7 @@ impl Canvas {
     }
 
     /// Returns the work that it is a part of.
-    pub fn work(&self) -> &Work {
+    pub(crate) fn work(&self) -> &Work {
         &self.work
     }
 
@@ -186,7 +186,7 @@ impl Canvas {
     }
 
     /// Returns the options.
-    pub fn options(&self) -> &Options {
+    pub(crate) fn options(&self) -> &Options {
         &self.options
     }
 
@@ -201,7 +201,7 @@ impl Canvas {
     /// target: so a long list is painted in parts. Keeps the memory.
     ///
     /// If the target is opaque and colours are mixed in sRGB, parts give the same bytes as the whole.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.background = None;
         self.commands.clear();
         self.lines.clear();

@@ -96,7 +96,7 @@ impl Step {
 }
 
 /// The facts of the naive form.
-pub const NAIVE: Info = Info {
+pub(crate) const NAIVE: Info = Info {
     name: "naive",
     title: "Seed fill with a stack of pixels",
     authors: "H. Lieberman",
@@ -286,7 +286,7 @@ pub fn boundary_fill<P: PixelValue>(
 /// # Errors
 /// [`Error::Memory`](crate::Error::Memory) if the budget that the image is charged to is too small for the stack, and its
 /// reason if that work is stopped. The image is then as it was.
-pub fn fill_where<P: Copy>(
+pub(crate) fn fill_where<P: Copy>(
     image: &mut Pixels<P>,
     seed: (u32, u32),
     value: P,

@@ -38,7 +38,7 @@ pub const INFO: Info = Info {
 };
 
 /// Width and height of a tile in pixels: a row's mask fits a byte.
-pub const TILE: i32 = 8;
+pub(crate) const TILE: i32 = 8;
 
 /// Result of testing a tile's corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -114,21 +114,21 @@ impl Bodies {
     }
 
     /// Returns all bodies, in the order of their first triangles.
-    pub fn all(&self) -> &[Body] {
+    pub(crate) fn all(&self) -> &[Body] {
         &self.bodies
     }
 
     /// Returns the index of a triangle's body; `None` for triangles without area, and for those
     /// that repeat the three vertices of an earlier one.
     #[inline]
-    pub fn of(&self, item: u32) -> Option<u32> {
+    pub(crate) fn of(&self, item: u32) -> Option<u32> {
         self.of_item.get(item as usize).filter(|p| **p != ABSENT).map(|p| p >> 1)
     }
 
     /// Returns whether a triangle must be turned over for its front to look out of its body (for an
     /// open one: for neighbours to agree).
     #[inline]
-    pub fn turned(&self, item: u32) -> bool {
+    pub(crate) fn turned(&self, item: u32) -> bool {
         self.of_item.get(item as usize).is_some_and(|p| *p != ABSENT && p & 1 == 1)
     }
 }

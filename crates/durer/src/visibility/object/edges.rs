@@ -17,14 +17,14 @@ impl Side {
 
     /// Returns the triangle.
     #[inline]
-    pub fn item(self) -> u32 {
+    pub(crate) fn item(self) -> u32 {
         self.packed >> 1
     }
 
     /// Returns whether the triangle runs through the edge from the smaller to the larger vertex
     /// number: the triangle is then to the left of that direction, seen from its front.
     #[inline]
-    pub fn forward(self) -> bool {
+    pub(crate) fn forward(self) -> bool {
         self.packed & 1 == 1
     }
 }
@@ -171,7 +171,7 @@ impl Edges {
 
     /// Returns the triangles at the edge between two vertices, the smaller first; none if there is no
     /// such edge.
-    pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
+    pub(crate) fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
         let sides = self.of_vertex(a);
         let start = sides.partition_point(|s| s.other < b);
         let end = sides.partition_point(|s| s.other <= b);
@@ -179,7 +179,7 @@ impl Edges {
     }
 
     /// Returns the edges whose smaller vertex lies in a range.
-    pub fn from_vertices(
+    pub(crate) fn from_vertices(
         &self,
         vertices: std::ops::Range<u32>,
     ) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {

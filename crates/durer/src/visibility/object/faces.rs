@@ -270,17 +270,17 @@ impl Faces {
     }
 
     /// Returns the number of triangles: one more than the largest item.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.triangles.len()
     }
 
     /// Returns whether there are no triangles.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
     /// Returns the distinct vertices, world space. Some may belong to no triangle.
-    pub fn points(&self) -> &[DVec3] {
+    pub(crate) fn points(&self) -> &[DVec3] {
         &self.points
     }
 
@@ -288,24 +288,24 @@ impl Faces {
     /// its front (unless its instance mirrors); `None` if two are one, or one is not finite, or for an
     /// item that does not exist.
     #[inline]
-    pub fn triangle(&self, item: u32) -> Option<[u32; 3]> {
+    pub(crate) fn triangle(&self, item: u32) -> Option<[u32; 3]> {
         self.triangles.get(item as usize).copied().filter(|t| *t != NONE)
     }
 
     /// Returns the lines of the scene, and its points as lines from a vertex to itself: indices
     /// into [`Self::points`], in scene order.
-    pub fn marks(&self) -> &[[u32; 2]] {
+    pub(crate) fn marks(&self) -> &[[u32; 2]] {
         &self.marks
     }
 
     /// Returns all triangles that have three vertices, with their items, in item order.
-    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
+    pub(crate) fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         (0..).zip(&self.triangles).filter(|(_, t)| **t != NONE).map(|(item, t)| (item, *t))
     }
 
     /// Returns the corners of a triangle, world space; `None` as in [`Self::triangle`].
     #[inline]
-    pub fn corners(&self, item: u32) -> Option<[DVec3; 3]> {
+    pub(crate) fn corners(&self, item: u32) -> Option<[DVec3; 3]> {
         Some(self.triangle(item)?.map(|v| self.points[v as usize]))
     }
 
@@ -318,12 +318,12 @@ impl Faces {
     }
 
     /// Returns the runs of one instance and material, in item order.
-    pub fn runs(&self) -> &[FaceRun] {
+    pub(crate) fn runs(&self) -> &[FaceRun] {
         &self.runs
     }
 
     /// Returns the run of an item; `None` if there is no such item. O(log runs).
-    pub fn run_of(&self, item: u32) -> Option<&FaceRun> {
+    pub(crate) fn run_of(&self, item: u32) -> Option<&FaceRun> {
         let run = self.runs.get(self.runs.partition_point(|r| r.items.end <= item))?;
         run.items.contains(&item).then_some(run)
     }
@@ -331,7 +331,7 @@ impl Faces {
     /// Returns whether two triangles are parts of one face with more than three corners, as the file
     /// had it: their common side is not an edge. Neighbours in item order only, as fans are.
     #[inline]
-    pub fn same_polygon(&self, a: u32, b: u32) -> bool {
+    pub(crate) fn same_polygon(&self, a: u32, b: u32) -> bool {
         self.polygons.as_ref().is_some_and(|p| p.get(a as usize) == p.get(b as usize))
     }
 }

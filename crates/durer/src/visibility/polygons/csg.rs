@@ -207,13 +207,11 @@ impl Step {
 /// # Errors
 /// [`Memory`](Error::Memory) where the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
-    let mut items = screen.plane(NO_ITEM)?;
-    for step in steps {
-        if let Step::Fill { part, face: Some(face) } = *step {
-            (part.x0..part.x1).for_each(|x| items.set(x, part.y, face));
-        }
-    }
-    Ok(items)
+    let runs = steps.iter().filter_map(|step| match *step {
+        Step::Fill { part, face: Some(face) } => Some((part.x0..part.x1).map(move |x| ([x, part.y], face))),
+        _ => None,
+    });
+    screen.painted(runs.flatten())
 }
 
 /// Returns the number of the face of the combined solid that is seen at each pixel's centre. Faces are numbered through

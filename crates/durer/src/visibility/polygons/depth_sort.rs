@@ -138,13 +138,10 @@ impl Step {
 /// # Errors
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
-    let mut items = screen.plane(NO_ITEM)?;
-    for step in steps {
-        if let Step::Pixel { pixel: [x, y], face } = *step {
-            items.set(x, y, face);
-        }
-    }
-    Ok(items)
+    screen.painted(steps.iter().filter_map(|step| match *step {
+        Step::Pixel { pixel, face } => Some((pixel, face)),
+        _ => None,
+    }))
 }
 
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.

@@ -77,7 +77,7 @@ impl Face {
     }
 
     /// Returns the nearest and the farthest corner's z.
-    pub fn depths(&self) -> [f64; 2] {
+    pub(crate) fn depths(&self) -> [f64; 2] {
         let z = || self.corners.iter().map(|c| c.z);
         [z().fold(f64::INFINITY, f64::min), z().fold(f64::NEG_INFINITY, f64::max)]
     }
@@ -88,14 +88,14 @@ impl Face {
     }
 
     /// Calls `emit` for the runs of pixels whose centres the polygon covers, by the even-odd rule.
-    pub fn spans(&self, screen: &Screen, emit: impl FnMut(Span)) {
+    pub(crate) fn spans(&self, screen: &Screen, emit: impl FnMut(Span)) {
         let options = Options { rule: FillRule::EvenOdd };
         let (width, height) = (screen.width, screen.height);
         edge_table::fill(&self.contours(), width, height, &options, emit, &mut NoTrace);
     }
 
     /// Calls `f` for the pixels whose centres the polygon covers, with the point of the polygon there.
-    pub fn pixels(&self, screen: &Screen, mut f: impl FnMut([u32; 2], DVec3)) {
+    pub(crate) fn pixels(&self, screen: &Screen, mut f: impl FnMut([u32; 2], DVec3)) {
         self.spans(screen, |span| {
             for x in span.x0..span.x1 {
                 f([x as u32, span.y as u32], self.at(x, span.y));

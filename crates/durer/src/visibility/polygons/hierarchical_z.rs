@@ -79,7 +79,7 @@ pub struct Test {
 
 impl Test {
     /// Returns whether the cell or face is hidden.
-    pub fn is_hidden(&self) -> bool {
+    pub(crate) fn is_hidden(&self) -> bool {
         self.nearest > self.farthest
     }
 }
@@ -162,13 +162,10 @@ impl Step {
 /// # Errors
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
-    let mut items = screen.plane(NO_ITEM)?;
-    for step in steps {
-        if let Step::Store { pixel: [x, y], face, .. } = *step {
-            items.set(x, y, face);
-        }
-    }
-    Ok(items)
+    screen.painted(steps.iter().filter_map(|step| match *step {
+        Step::Store { pixel, face, .. } => Some((pixel, face)),
+        _ => None,
+    }))
 }
 
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.

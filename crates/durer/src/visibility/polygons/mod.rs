@@ -47,7 +47,7 @@ pub use face::Face;
 use crate::Result;
 use crate::math::DVec2;
 use crate::raster::polygon::edge_table::Edge;
-use crate::target::Pixels;
+use crate::target::{NO_ITEM, Pixels};
 use crate::trace::NoTrace;
 use crate::work::{Charge, Work};
 
@@ -67,6 +67,13 @@ impl Screen {
     /// Returns a plane of this size.
     fn plane<T: Copy>(&self, value: T) -> Result<Pixels<T>> {
         Pixels::within((&self.work, "planes of the picture"), self.width, self.height, value)
+    }
+
+    /// Returns the picture that is made by pixels with their faces, painted one after the other.
+    fn painted(&self, pixels: impl Iterator<Item = ([u32; 2], u32)>) -> Result<Pixels<u32>> {
+        let mut items = self.plane(NO_ITEM)?;
+        pixels.for_each(|([x, y], face)| items.set(x, y, face));
+        Ok(items)
     }
 
     /// Charges the edge table for the pixels of the face with the most corners: faces are scanned one after the other.

@@ -92,13 +92,11 @@ impl Step {
 /// # Errors
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
-    let mut items = screen.plane(NO_ITEM)?;
-    for step in steps {
-        if let Step::Paint { face, y, x0, x1 } = *step {
-            (x0..x1).for_each(|x| items.set(x as u32, y as u32, face));
-        }
-    }
-    Ok(items)
+    let runs = steps.iter().filter_map(|step| match *step {
+        Step::Paint { face, y, x0, x1 } => Some((x0..x1).map(move |x| ([x as u32, y as u32], face))),
+        _ => None,
+    });
+    screen.painted(runs.flatten())
 }
 
 /// Returns the index of the face that is painted last at each pixel's centre; among faces with equal keys the first one

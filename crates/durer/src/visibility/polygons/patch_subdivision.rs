@@ -117,7 +117,7 @@ impl Patch {
     }
 
     /// Returns the four corners: u = 0 and 1 for v = 0, then for v = 1.
-    pub fn corners(&self) -> [DVec3; 4] {
+    pub(crate) fn corners(&self) -> [DVec3; 4] {
         let [first, _, _, last] = &self.rows;
         [first[0], first[3], last[0], last[3]]
     }

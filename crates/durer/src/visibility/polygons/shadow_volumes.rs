@@ -94,7 +94,7 @@ impl Side {
 
     /// Returns whether the side turns its front to the eye, so that a ray from there enters the volume; `None` if it is
     /// seen edge-on.
-    pub fn front(&self) -> Option<bool> {
+    pub(crate) fn front(&self) -> Option<bool> {
         let z = self.normal().z;
         (z != 0.0 && z.is_finite()).then_some(z < 0.0)
     }

@@ -127,13 +127,11 @@ impl Step {
 /// # Errors
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
-    let mut items = screen.plane(NO_ITEM)?;
-    for step in steps {
-        if let Step::Span { face, y, columns: [x0, x1] } = *step {
-            (x0..x1).for_each(|x| items.set(x as u32, y as u32, face));
-        }
-    }
-    Ok(items)
+    let runs = steps.iter().filter_map(|step| match *step {
+        Step::Span { face, y, columns: [x0, x1] } => Some((x0..x1).map(move |x| ([x as u32, y as u32], face))),
+        _ => None,
+    });
+    screen.painted(runs.flatten())
 }
 
 /// Returns the index of the nearest face at each pixel's centre, of equally near ones the first.

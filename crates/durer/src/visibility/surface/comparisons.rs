@@ -25,7 +25,7 @@ pub struct Comparisons {
 ///
 /// # Errors
 /// [`crate::Error::Memory`] if the budget has no room for depths, and the reason that stopped the input's work.
-pub fn comparisons(input: &SurfaceInput<'_>) -> crate::Result<Comparisons> {
+pub(crate) fn comparisons(input: &SurfaceInput<'_>) -> crate::Result<Comparisons> {
     let mut counts = Comparisons::default();
     let window = pixels_of(input.view);
     let pixels = u64::from(input.view.window().width()) * u64::from(input.view.window().height());

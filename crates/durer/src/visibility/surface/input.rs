@@ -50,7 +50,7 @@ impl<'a> SurfaceInput<'a> {
     ///
     /// # Errors
     /// As [`Self::new`], and [`crate::Error::Memory`] if the budget has no room for the triangles.
-    pub fn within(
+    pub(crate) fn within(
         work: &Work,
         scene: &'a Scene,
         view: &'a View,
@@ -75,7 +75,7 @@ impl<'a> SurfaceInput<'a> {
     }
 
     /// Returns the run that a triangle of [`Self::triangles`] belongs to.
-    pub fn run_of(&self, item: u32) -> &Run {
+    pub(crate) fn run_of(&self, item: u32) -> &Run {
         &self.runs[crate::visibility::surface::points::attributes::run_of(&self.runs, item)]
     }
 

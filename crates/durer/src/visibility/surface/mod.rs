@@ -59,7 +59,7 @@ pub enum Samples {
 impl Samples {
     /// Returns the positions of the samples relative to the pixel's centre, in 1/256 pixel, x right and y down: the
     /// standard patterns of Direct3D 11.
-    pub fn offsets(self) -> &'static [[i32; 2]] {
+    pub(crate) fn offsets(self) -> &'static [[i32; 2]] {
         const FOUR: [[i32; 2]; 4] = sixteenths([[-2, -6], [6, -2], [-6, 2], [2, 6]]);
         const SIXTEEN: [[i32; 2]; 16] = sixteenths([
             [1, 1],
@@ -135,7 +135,7 @@ pub enum Background {
 impl Background {
     /// Returns the linear colour for lines and points without a material before this background: dark on light, light
     /// on dark. Transparent parts count as light.
-    pub fn ink(&self) -> Vec3 {
+    pub(crate) fn ink(&self) -> Vec3 {
         let mean = match *self {
             Self::Color(color) => color,
             Self::Gradient(top, bottom) => (top + bottom) * 0.5,

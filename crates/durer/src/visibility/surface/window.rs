@@ -28,12 +28,12 @@ pub struct Window {
 
 impl Window {
     /// Returns whether it contains no sample.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
 
     /// Returns the common part.
-    pub fn and(&self, o: &Self) -> Self {
+    pub(crate) fn and(&self, o: &Self) -> Self {
         Self {
             x0: self.x0.max(o.x0),
             y0: self.y0.max(o.y0),
@@ -43,12 +43,12 @@ impl Window {
     }
 
     /// Returns whether it is within another window.
-    pub fn within(&self, o: &Self) -> bool {
+    pub(crate) fn within(&self, o: &Self) -> bool {
         self.x0 >= o.x0 && self.y0 >= o.y0 && self.x1 <= o.x1 && self.y1 <= o.y1
     }
 
     /// Returns the samples in its corners.
-    pub fn corners(&self) -> [[i32; 2]; 4] {
+    pub(crate) fn corners(&self) -> [[i32; 2]; 4] {
         let (x, y) = (self.x1 - 1, self.y1 - 1);
         [[self.x0, self.y0], [x, self.y0], [self.x0, y], [x, y]]
     }

@@ -101,7 +101,7 @@ pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, options: &Options) -
 ///
 /// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 53 bits for a coordinate; `None` if there is no
 /// extent.
-pub fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
+pub(crate) fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
     let all = Rect::around(bounds.into_iter().flatten().flat_map(|b| [b.min(), b.max()]))?;
     let farthest = all.min().abs().max(all.max().abs()).max_element();
     let cell = (all.size().max_element() / 2f64.powi(40)).max(farthest / 2f64.powi(53));

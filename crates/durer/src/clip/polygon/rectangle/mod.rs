@@ -160,7 +160,7 @@ pub fn clip(
 ///
 /// # Errors
 /// As [`clip`].
-pub fn clip_with_sources(
+pub(crate) fn clip_with_sources(
     window: &Rect,
     shapes: &Shapes,
     _options: &Options,

@@ -84,28 +84,28 @@ impl Prepared {
     }
 
     /// Returns the polygons.
-    pub fn shapes(&self) -> &Shapes {
+    pub(crate) fn shapes(&self) -> &Shapes {
         &self.shapes
     }
 
     /// Returns the smallest rectangle around them; `None` if there is no point.
-    pub fn bounds(&self) -> Option<Rect> {
+    pub(crate) fn bounds(&self) -> Option<Rect> {
         self.tree.around()
     }
 
     /// Returns the part of all polygons in the window, with the same bits as [`super::clip`].
-    pub fn clip(&self, window: &Rect) -> Shapes {
+    pub(crate) fn clip(&self, window: &Rect) -> Shapes {
         self.run::<NoSources>(window).0
     }
 
     /// Clips as [`Self::clip`], and returns the source of every point.
-    pub fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<Source>) {
+    pub(crate) fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<Source>) {
         self.run(window)
     }
 
     /// Returns whether an edge comes near a rectangle: the boxes around both have a point in
     /// common.
-    pub fn has_edges_near(&self, window: &Rect) -> bool {
+    pub(crate) fn has_edges_near(&self, window: &Rect) -> bool {
         self.rings_near(window).into_iter().any(|number| {
             let ring = self.directed(number);
             let mut found = false;
@@ -145,13 +145,13 @@ impl Prepared {
 
     /// Returns whether a point lies in the closed polygons, by the even-odd rule over all rings;
     /// exact.
-    pub fn contains(&self, p: DVec2) -> bool {
+    pub(crate) fn contains(&self, p: DVec2) -> bool {
         let place = self.place(p);
         place.odd || place.on_border
     }
 
     /// Returns whether a point lies on a ring; exact.
-    pub fn has_on_border(&self, p: DVec2) -> bool {
+    pub(crate) fn has_on_border(&self, p: DVec2) -> bool {
         self.place(p).on_border
     }
 

@@ -261,7 +261,7 @@ fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
 
 /// Returns whether no two edges cross, overlap or touch, except for allowed touches. Also `false` for rings of fewer
 /// than three points, for repeated points, and if there are too many comparisons.
-pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
+pub(crate) fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
     if touching == Touching::No && shapes.points().len() <= few::FEW {
         return few::are_apart(shapes);
     }

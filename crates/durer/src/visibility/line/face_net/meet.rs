@@ -25,7 +25,7 @@ pub struct Pierce {
 
 impl FaceNet {
     /// Returns where the line between two corners crosses an edge that begins at neither of them.
-    pub fn crossing(&self, line: [usize; 2], edge: usize) -> Option<Crossing> {
+    pub(crate) fn crossing(&self, line: [usize; 2], edge: usize) -> Option<Crossing> {
         let ends = self.edges[edge].corners;
         if ends.iter().any(|end| line.contains(end)) {
             return None;
@@ -44,7 +44,7 @@ impl FaceNet {
     }
 
     /// Returns where the line between two corners goes through a face that has neither of them.
-    pub fn pierce(&self, line: [usize; 2], face: usize) -> Option<Pierce> {
+    pub(crate) fn pierce(&self, line: [usize; 2], face: usize) -> Option<Pierce> {
         let own = &self.faces[face];
         if own.ring.iter().any(|corner| line.contains(corner)) {
             return None;
@@ -60,7 +60,7 @@ impl FaceNet {
     }
 
     /// Returns the faces that hide a corner, without those that it belongs to.
-    pub fn faces_before(&self, corner: usize) -> Vec<usize> {
+    pub(crate) fn faces_before(&self, corner: usize) -> Vec<usize> {
         let point = self.points[corner];
         let hides = |face: &usize| {
             let own = &self.faces[*face];
@@ -75,7 +75,7 @@ impl FaceNet {
 
     /// Returns the faces at a corner that hide the beginning of the line from there to another corner; those that the
     /// line belongs to do not.
-    pub fn faces_over(&self, line @ [from, to]: [usize; 2]) -> Vec<usize> {
+    pub(crate) fn faces_over(&self, line @ [from, to]: [usize; 2]) -> Vec<usize> {
         let hides = |face: &usize| {
             let own = &self.faces[*face];
             self.is_hider(*face) && own.ring.contains(&from) && !own.has(line) && {
@@ -111,7 +111,7 @@ impl FaceNet {
 
     /// Returns whether the left side of an edge of a face, as the edge's corners are numbered, is in the face on the
     /// page.
-    pub fn is_left_of(&self, face: usize, edge: usize) -> bool {
+    pub(crate) fn is_left_of(&self, face: usize, edge: usize) -> bool {
         let own = &self.faces[face];
         let [a, b] = self.edges[edge].corners;
         let count = own.ring.len();
@@ -122,7 +122,7 @@ impl FaceNet {
 
 impl NetFace {
     /// Returns the numbers of the edges: the first one from the first corner to the second.
-    pub fn edges(&self) -> &[usize] {
+    pub(crate) fn edges(&self) -> &[usize] {
         &self.edges
     }
 

@@ -125,7 +125,7 @@ impl FaceNet {
     }
 
     /// Returns the corners on the page.
-    pub fn points(&self) -> &[DVec3] {
+    pub(crate) fn points(&self) -> &[DVec3] {
         &self.points
     }
 
@@ -159,7 +159,7 @@ impl FaceNet {
     }
 
     /// Returns the parameter in space of the point at `t` of the way from one corner to another on the page.
-    pub fn in_space(&self, [from, to]: [usize; 2], t: f64) -> f64 {
+    pub(crate) fn in_space(&self, [from, to]: [usize; 2], t: f64) -> f64 {
         if !self.is_perspective {
             return t;
         }

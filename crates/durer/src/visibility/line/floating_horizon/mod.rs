@@ -139,7 +139,7 @@ pub fn curves(
 
 /// Returns the columns and the rows of a field's cells, each nearest first: in the order of rows, and of
 /// columns in each row, no cell is hidden by one that comes later.
-pub fn front_to_back(field: &HeightField, camera: &Camera) -> [Vec<usize>; 2] {
+pub(crate) fn front_to_back(field: &HeightField, camera: &Camera) -> [Vec<usize>; 2] {
     let middle = field.bounds().map_or(DVec3::ZERO, |b| b.center());
     let sight = sight::Sight::new(camera, middle);
     [sight.order(field, 0, middle.x), sight.order(field, 2, middle.z)]

@@ -110,7 +110,7 @@ impl Body {
     }
 
     /// Returns the ends of an edge.
-    pub fn ends(&self, edge: &Edge) -> [DVec3; 2] {
+    pub(crate) fn ends(&self, edge: &Edge) -> [DVec3; 2] {
         edge.corners.map(|corner| self.corners[corner])
     }
 }

@@ -68,7 +68,7 @@ impl SceneOrientation {
     }
 
     /// Returns whether all faces are right as they are.
-    pub fn is_right(&self) -> bool {
+    pub(crate) fn is_right(&self) -> bool {
         !self.turned.contains(&true)
     }
 

@@ -39,7 +39,7 @@ pub struct Cylinder {
 
 impl Cylinder {
     /// Returns the direction of the axis, from its first end to the other, of unit length.
-    pub fn axis(&self) -> DVec3 {
+    pub(crate) fn axis(&self) -> DVec3 {
         (self.ends[1] - self.ends[0]).normalize_or_zero()
     }
 

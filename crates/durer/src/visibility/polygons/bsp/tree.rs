@@ -154,7 +154,7 @@ impl Tree {
     }
 
     /// Returns the number of nodes.
-    pub fn node_count(&self) -> usize {
+    pub(crate) fn node_count(&self) -> usize {
         self.nodes.len()
     }
 

@@ -55,7 +55,7 @@ impl ScreenTriangle {
     /// Returns the first and last column and row of pixels whose centres lie in the bounding box;
     /// `None` if there are none.
     #[inline]
-    pub fn pixel_bounds(&self, margin: i32) -> Option<[i32; 4]> {
+    pub(crate) fn pixel_bounds(&self, margin: i32) -> Option<[i32; 4]> {
         let min = |v: &[i32; 3]| first_center(v[0].min(v[1]).min(v[2]) - margin);
         let max = |v: &[i32; 3]| first_center(v[0].max(v[1]).max(v[2]) + margin + 1) - 1;
         let bounds = [min(&self.x), min(&self.y), max(&self.x), max(&self.y)];
