@@ -112,7 +112,7 @@ impl Provenance for Vec<Source> {
 /// ```
 ///
 /// `None` if a source names a point that `values` does not have.
-pub(crate) fn interpolate<V: Copy>(
+pub fn interpolate<V: Copy>(
     sources: &[Source],
     values: &[V],
     mut lerp: impl FnMut(V, V, f64) -> V,

@@ -100,7 +100,7 @@ impl Outcode {
 
     /// Returns whether all bits of `other` are set.
     #[inline]
-    pub(crate) fn contains(self, other: Self) -> bool {
+    pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 }

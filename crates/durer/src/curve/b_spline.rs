@@ -91,7 +91,7 @@ impl<P: Point> BSpline<P> {
     }
 
     /// Returns the degree of its pieces.
-    pub(crate) fn degree(&self) -> usize {
+    pub fn degree(&self) -> usize {
         self.degree
     }
 
@@ -106,7 +106,7 @@ impl<P: Point> BSpline<P> {
     }
 
     /// Returns the first and last parameter.
-    pub(crate) fn domain(&self) -> (f64, f64) {
+    pub fn domain(&self) -> (f64, f64) {
         (self.knots[self.degree], self.knots[self.control.len()])
     }
 
@@ -181,7 +181,7 @@ impl<P> Step<P> {
 /// assert_eq!(de_boor(&spline, 0.25, &mut steps), 1.625);
 /// assert_eq!(steps.steps().len(), 3);
 /// ```
-pub(crate) fn de_boor<P: Point>(curve: &BSpline<P>, t: f64, tracer: &mut impl Tracer<Step<P>>) -> P {
+pub fn de_boor<P: Point>(curve: &BSpline<P>, t: f64, tracer: &mut impl Tracer<Step<P>>) -> P {
     let (p, (span, t)) = (curve.degree, curve.span(t));
     let mut points = curve.control[span - p..=span].to_vec();
     for level in 1..=p {
@@ -198,7 +198,7 @@ pub(crate) fn de_boor<P: Point>(curve: &BSpline<P>, t: f64, tracer: &mut impl Tr
 
 /// Returns the point of a rational curve at a parameter: [`de_boor`] with homogeneous points (x · weight, y ·
 /// weight, weight), then one division.
-pub(crate) fn de_boor_rational(curve: &Nurbs, t: f64, tracer: &mut impl Tracer<Step<DVec3>>) -> DVec2 {
+pub fn de_boor_rational(curve: &Nurbs, t: f64, tracer: &mut impl Tracer<Step<DVec3>>) -> DVec2 {
     project(de_boor(&curve.lifted, t, tracer)).unwrap_or_default()
 }
 

@@ -99,7 +99,7 @@ pub fn de_casteljau<P: Point>(
 }
 
 /// Cuts a curve at `t`: the control points of both parts, which meet in the curve's point.
-pub(crate) fn split<P: Point>(control: &[P], t: f64) -> (Vec<P>, Vec<P>) {
+pub fn split<P: Point>(control: &[P], t: f64) -> (Vec<P>, Vec<P>) {
     let mut points = control.to_vec();
     let (mut left, mut right) = (Vec::new(), Vec::new());
     while let (Some(first), Some(last)) = (points.first(), points.last()) {
@@ -113,7 +113,7 @@ pub(crate) fn split<P: Point>(control: &[P], t: f64) -> (Vec<P>, Vec<P>) {
 
 /// Returns the point of a rational curve: control points with weights (x, y, weight); `None` without
 /// control points or where the weights cancel.
-pub(crate) fn rational(control: &[(DVec2, f64)], t: f64) -> Option<DVec2> {
+pub fn rational(control: &[(DVec2, f64)], t: f64) -> Option<DVec2> {
     let lifted: Vec<DVec3> = control.iter().map(|(p, w)| (*p * *w).extend(*w)).collect();
     project(de_casteljau(&lifted, t, &mut crate::trace::NoTrace)?)
 }
@@ -124,7 +124,7 @@ pub(crate) fn project(p: DVec3) -> Option<DVec2> {
 }
 
 /// Returns the point, and the derivatives along u and v, of a bicubic patch; the normal is their cross product.
-pub(crate) fn bicubic(control: &[[DVec3; 4]; 4], u: f64, v: f64) -> (DVec3, DVec3, DVec3) {
+pub fn bicubic(control: &[[DVec3; 4]; 4], u: f64, v: f64) -> (DVec3, DVec3, DVec3) {
     let (bu, du) = (bernstein(u), bernstein_derivative(u));
     let (bv, dv) = (bernstein(v), bernstein_derivative(v));
     let sum = |a: [f64; 4], b: [f64; 4]| {

@@ -93,7 +93,7 @@ impl Step {
 /// assert_eq!(control[1], DVec2::Y);
 /// assert_eq!(control[2], DVec2::new(3.0, 1.0));
 /// ```
-pub(crate) fn hermite(ends: [DVec2; 2], tangents: [DVec2; 2]) -> [DVec2; 4] {
+pub fn hermite(ends: [DVec2; 2], tangents: [DVec2; 2]) -> [DVec2; 4] {
     [ends[0], ends[0] + tangents[0] / 3.0, ends[1] - tangents[1] / 3.0, ends[1]]
 }
 
@@ -127,7 +127,7 @@ pub fn pieces(points: &[DVec2], options: &Options, t: &mut impl Tracer<Step>) ->
 }
 
 /// Returns the curve through points as a path.
-pub(crate) fn path(points: &[DVec2], options: &Options, t: &mut impl Tracer<Step>) -> Path {
+pub fn path(points: &[DVec2], options: &Options, t: &mut impl Tracer<Step>) -> Path {
     let mut path = Path::new();
     for (number, [start, b, c, end]) in pieces(points, options, t).into_iter().enumerate() {
         if number == 0 {

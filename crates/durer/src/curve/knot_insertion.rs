@@ -50,7 +50,7 @@ pub const INFO: Info = Info {
 };
 
 /// The facts of the Oslo algorithm.
-pub(crate) const OSLO: Info = Info {
+pub const OSLO: Info = Info {
     name: "oslo",
     title: "Knot insertion by the Oslo algorithm",
     authors: "E. Cohen, T. Lyche, R. Riesenfeld",

@@ -38,7 +38,7 @@ impl Path {
     }
 
     /// Returns whether there is nothing in it.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.elements.is_empty()
     }
 
@@ -80,7 +80,7 @@ impl Path {
     }
 
     /// Creates a closed polygon.
-    pub(crate) fn polygon(points: impl IntoIterator<Item = DVec2>) -> Self {
+    pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Self {
         let mut path = Self::polyline(points);
         if !path.is_empty() {
             path.close();
@@ -110,7 +110,7 @@ impl Path {
     }
 
     /// Creates an ellipse with its axes parallel to the coordinate axes, as four cubic curves.
-    pub(crate) fn ellipse(center: DVec2, radii: DVec2) -> Self {
+    pub fn ellipse(center: DVec2, radii: DVec2) -> Self {
         let at = |x: f64, y: f64| center + radii * DVec2::new(x, y);
         let k = QUARTER_CIRCLE;
         let mut path = Self::new();

@@ -10,7 +10,7 @@ use crate::math::DVec2;
 use std::collections::VecDeque;
 
 /// Directions in the plane, and how far apart lines along them should be.
-pub(crate) trait Field {
+pub trait Field {
     /// Returns the direction at a point, of unit length; its sign does not matter. `None` if the field has
     /// none: lines end.
     fn direction(&self, p: DVec2) -> Option<DVec2>;
@@ -36,7 +36,7 @@ pub struct Options {
 
 /// A line along the field.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Streamline {
+pub struct Streamline {
     /// Its points, a step apart.
     pub points: Vec<DVec2>,
     /// True if its last point is joined to the first.
@@ -56,7 +56,7 @@ const SHARPEST_TURN: f64 = 0.5;
 /// Traces streamlines over the rectangle from the origin to `size`, which has to be finite.
 ///
 /// Nothing where the step is not a number above 0.
-pub(crate) fn streamlines(
+pub fn streamlines(
     field: &impl Field,
     size: DVec2,
     seeds: impl IntoIterator<Item = DVec2>,

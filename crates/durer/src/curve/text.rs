@@ -50,7 +50,7 @@ impl TextLine {
     /// Returns the outlines along a polyline: each glyph is turned by the direction at its middle, as SVG's `textPath`
     /// does. The text's start is `start` along the polyline, its base line `below` that far on its right (y down);
     /// glyphs before or after the polyline continue it straight.
-    pub(crate) fn along(&self, polyline: &[DVec2], start: f64, below: f64) -> Path {
+    pub fn along(&self, polyline: &[DVec2], start: f64, below: f64) -> Path {
         let mut out = Path::new();
         let mut first = 0;
         for glyph in &self.glyphs {
@@ -72,7 +72,7 @@ impl TextLine {
 
 /// Returns the point so far along a polyline, and the unit direction there; `None` if it has no
 /// length.
-pub(crate) fn place_along(polyline: &[DVec2], mut along: f64) -> Option<(DVec2, DVec2)> {
+pub fn place_along(polyline: &[DVec2], mut along: f64) -> Option<(DVec2, DVec2)> {
     let mut last = None;
     for pair in polyline.windows(2) {
         let (way, length) = (pair[1] - pair[0], pair[0].distance(pair[1]));
@@ -107,7 +107,7 @@ impl<'a> Font<'a> {
     }
 
     /// Returns whether the font has a glyph for a character, or the character needs none.
-    pub(crate) fn has(&self, character: char) -> bool {
+    pub fn has(&self, character: char) -> bool {
         character.is_control() || self.font.charmap().map(character).is_some()
     }
 

@@ -126,7 +126,7 @@ pub const SPACE: &[Family] = &[
 pub const VISIBILITY: &[Family] = &[family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS)];
 
 /// All lessons by families: those of [`PLANE`], then those of [`SPACE`] and of [`VISIBILITY`].
-pub(crate) const FAMILIES: &[Family] = &joined::<{ PLANE.len() + SPACE.len() + VISIBILITY.len() }>();
+pub const FAMILIES: &[Family] = &joined::<{ PLANE.len() + SPACE.len() + VISIBILITY.len() }>();
 
 const fn joined<const N: usize>() -> [Family; N] {
     let mut all = [PLANE[0]; N];

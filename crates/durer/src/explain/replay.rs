@@ -239,7 +239,7 @@ impl Frames {
     }
 
     /// Returns whether the algorithm took no step.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.outline.is_empty()
     }
 
@@ -261,7 +261,7 @@ impl Frames {
     }
 
     /// Returns all frames in their order.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Frame> {
+    pub fn iter(&self) -> impl Iterator<Item = Frame> {
         self.starting_at(0)
     }
 

@@ -14,7 +14,7 @@ pub struct AlphaTest {
 impl AlphaTest {
     /// Returns whether a fragment of this alpha passes.
     #[inline(always)]
-    pub(crate) fn passes(&self, alpha: f32) -> bool {
+    pub fn passes(&self, alpha: f32) -> bool {
         self.compare.passes(alpha, self.reference.clamp(0.0, 1.0))
     }
 }

@@ -156,7 +156,7 @@ pub enum Blend {
 impl Blend {
     /// Returns the blended colour, clamped to 0…1.
     #[inline]
-    pub(crate) fn apply(&self, source: Vec4, destination: Vec4) -> Vec4 {
+    pub fn apply(&self, source: Vec4, destination: Vec4) -> Vec4 {
         match self {
             Self::Over => over_straight(source, destination),
             Self::Functions { color, alpha, constant } => {

@@ -45,7 +45,7 @@ impl Palette {
     ///
     /// # Errors
     /// [`Error::Parameter`] for more than 256 colours.
-    pub(crate) fn new(colors: &[[u8; 4]]) -> Result<Self> {
+    pub fn new(colors: &[[u8; 4]]) -> Result<Self> {
         let mut palette = Self { colors: [[0, 0, 0, 255]; 256] };
         let to = palette.colors.get_mut(..colors.len());
         let to = to.ok_or_else(|| Error::parameter("colours", colors.len(), "at most 256"))?;
@@ -54,18 +54,18 @@ impl Palette {
     }
 
     /// Returns the colour of an index: sRGB, straight alpha.
-    pub(crate) fn get(&self, index: u8) -> [u8; 4] {
+    pub fn get(&self, index: u8) -> [u8; 4] {
         self.colors[usize::from(index)]
     }
 
     /// Sets the colour of an index.
-    pub(crate) fn set(&mut self, index: u8, color: [u8; 4]) {
+    pub fn set(&mut self, index: u8, color: [u8; 4]) {
         self.colors[usize::from(index)] = color;
     }
 
     /// Sets a range of indices to colours in equal steps of light, from the given colour of its first index to the one
     /// of its last; linear RGBA, straight alpha. A range of one index gets the first colour.
-    pub(crate) fn ramp(&mut self, indices: RangeInclusive<u8>, first: Vec4, last: Vec4) {
+    pub fn ramp(&mut self, indices: RangeInclusive<u8>, first: Vec4, last: Vec4) {
         let steps = f32::from(indices.end().saturating_sub(*indices.start())).max(1.0);
         for (i, index) in indices.enumerate() {
             self.set(index, encode_rgba8(first.lerp(last, i as f32 / steps)));
@@ -74,7 +74,7 @@ impl Palette {
 
     /// Returns the index whose colour is nearest: the least sum of squared differences of sRGB codes
     /// and alpha; among equally near ones the lowest. Cost: 256 comparisons.
-    pub(crate) fn nearest(&self, color: [u8; 4]) -> u8 {
+    pub fn nearest(&self, color: [u8; 4]) -> u8 {
         let distance = |index: &u8| -> u32 {
             let entry = self.get(*index);
             (0..4).map(|k| u32::from(entry[k].abs_diff(color[k])).pow(2)).sum()

@@ -36,7 +36,7 @@ impl Compare {
 
     /// Returns whether the incoming value passes. NaN passes `NotEqual` and `Always` alone.
     #[inline(always)]
-    pub(crate) fn passes<T: PartialOrd>(self, incoming: T, stored: T) -> bool {
+    pub fn passes<T: PartialOrd>(self, incoming: T, stored: T) -> bool {
         match self {
             Self::Never => false,
             Self::Less => incoming < stored,

@@ -60,7 +60,7 @@ impl PolygonOffset {
     /// `slope` is the change of depth per pixel along x and y, `deepest` the largest absolute depth of
     /// its vertices: for a floating-point depth plane the smallest difference is 2^(e − 23), e being the
     /// exponent of that depth.
-    pub(crate) fn offset(&self, slope: [f32; 2], deepest: f32) -> f32 {
+    pub fn offset(&self, slope: [f32; 2], deepest: f32) -> f32 {
         let steepest = slope[0].abs().max(slope[1].abs());
         let smallest = f32::from_bits(deepest.abs().max(f32::MIN_POSITIVE).to_bits() & 0x7f80_0000)
             * (1.0 / 8_388_608.0);

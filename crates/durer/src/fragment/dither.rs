@@ -52,7 +52,7 @@ impl Default for Dither {
 
 impl Dither {
     /// Returns the 8-bit sRGB colour of a pixel at column x, row y; alpha is rounded, not dithered.
-    pub(crate) fn apply(&self, color: Vec4, x: u32, y: u32) -> [u8; 4] {
+    pub fn apply(&self, color: Vec4, x: u32, y: u32) -> [u8; 4] {
         let threshold = threshold(x, y);
         let channel = |v: f32| self.channel(v, threshold);
         [channel(color.x), channel(color.y), channel(color.z), encode_unorm8(color.w)]
@@ -61,7 +61,7 @@ impl Dither {
     /// Returns a colour index with a fraction: the whole number above or below it, which is higher
     /// where the fraction is above the threshold (OpenGL 2.1, 4.1.9). Of the result the lowest eight
     /// bits count.
-    pub(crate) fn index(&self, index: f32, x: u32, y: u32) -> u8 {
+    pub fn index(&self, index: f32, x: u32, y: u32) -> u8 {
         let low = index.floor();
         let fraction = index - low;
         whole_index(low + if fraction > threshold(x, y) { 1.0 } else { 0.0 })

@@ -60,7 +60,7 @@ impl LogicOp {
 
     /// Returns the operation on all bits of a channel.
     #[inline]
-    pub(crate) fn apply(self, s: u8, d: u8) -> u8 {
+    pub fn apply(self, s: u8, d: u8) -> u8 {
         match self {
             Self::Clear => 0,
             Self::And => s & d,

@@ -16,7 +16,7 @@ pub struct Scissor {
 impl Scissor {
     /// Returns whether the pixel is inside.
     #[inline(always)]
-    pub(crate) fn contains(&self, x: u32, y: u32) -> bool {
+    pub fn contains(&self, x: u32, y: u32) -> bool {
         x >= self.x0 && x < self.x1 && y >= self.y0 && y < self.y1
     }
 

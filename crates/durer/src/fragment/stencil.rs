@@ -39,7 +39,7 @@ impl StencilOp {
 
     /// Returns the new value.
     #[inline(always)]
-    pub(crate) fn apply(self, stored: u8, reference: u8) -> u8 {
+    pub fn apply(self, stored: u8, reference: u8) -> u8 {
         match self {
             Self::Keep => stored,
             Self::Zero => 0,
@@ -87,7 +87,7 @@ impl Default for StencilFace {
 impl StencilFace {
     /// Returns whether the fragment passes over this stored value.
     #[inline(always)]
-    pub(crate) fn passes(&self, stored: u8) -> bool {
+    pub fn passes(&self, stored: u8) -> bool {
         self.compare.passes(self.reference & self.read_mask, stored & self.read_mask)
     }
 

@@ -55,7 +55,7 @@ impl ColorMap {
     }
 
     /// Returns the colour of a number from 0 to 1, sRGB, opaque; numbers beyond are clamped.
-    pub(crate) fn at(self, part: f64) -> [u8; 4] {
+    pub fn at(self, part: f64) -> [u8; 4] {
         let table: &[[u8; 3]] = match self {
             Self::Viridis => &VIRIDIS,
             Self::Terrain => &TERRAIN,

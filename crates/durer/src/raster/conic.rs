@@ -18,7 +18,7 @@ use crate::trace::Tracer;
 use crate::{Error, Result};
 
 /// The facts of circles.
-pub(crate) const CIRCLE: Info = Info {
+pub const CIRCLE: Info = Info {
     name: "midpoint-circle",
     title: "Midpoint circle",
     authors: "J. E. Bresenham; M. L. V. Pitteway",

@@ -4,10 +4,10 @@
 //! agree on every pixel; two triangles that share an edge share its snapped end points too.
 
 /// Bits below the pixel, as Direct3D demands and most hardware has.
-pub(crate) const SUBPIXEL_BITS: u32 = 8;
+pub const SUBPIXEL_BITS: u32 = 8;
 
 /// Steps of the grid in one pixel.
-pub(crate) const SUBPIXELS: i32 = 1 << SUBPIXEL_BITS;
+pub const SUBPIXELS: i32 = 1 << SUBPIXEL_BITS;
 
 /// Half a pixel: the offset of a pixel's centre from its upper left corner.
 pub(crate) const HALF_PIXEL: i32 = SUBPIXELS / 2;

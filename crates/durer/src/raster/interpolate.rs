@@ -11,7 +11,7 @@ use crate::math::{DVec2, DVec3};
 use std::ops::{Add, Mul};
 
 /// The facts of barycentric coordinates.
-pub(crate) const BARYCENTRIC: Info = Info {
+pub const BARYCENTRIC: Info = Info {
     name: "barycentric",
     title: "Barycentric coordinates",
     authors: "A. F. Möbius",

@@ -39,7 +39,7 @@ pub const INFO: Info = Info {
 };
 
 /// The facts of points as discs.
-pub(crate) const DISC: Info = Info {
+pub const DISC: Info = Info {
     name: "smooth-points",
     title: "Points as smooth discs",
     cost: "O(size²) pixels, four arcs each",

@@ -16,7 +16,7 @@ const MOST_DOTS: f64 = 1e6;
 /// Places dots by `density`, in dots per pixel; densities that are not above 0 mean none.
 ///
 /// The places are in pixels, y downwards, the centre of the first pixel at (0.5, 0.5), in the order of Hilbert's curve.
-pub(crate) fn stipple(density: &Pixels<f32>) -> Vec<DVec2> {
+pub fn stipple(density: &Pixels<f32>) -> Vec<DVec2> {
     let mut dots = along_hilbert(density);
     for _ in 0..ROUNDS {
         settle(density, &mut dots);

@@ -128,12 +128,12 @@ impl HeightField {
     }
 
     /// Returns x of a column.
-    pub(crate) fn x(&self, column: usize) -> f64 {
+    pub fn x(&self, column: usize) -> f64 {
         between(self.x, column, self.columns)
     }
 
     /// Returns z of a row.
-    pub(crate) fn z(&self, row: usize) -> f64 {
+    pub fn z(&self, row: usize) -> f64 {
         between(self.z, row, self.rows)
     }
 
@@ -199,7 +199,7 @@ impl HeightField {
     }
 
     /// Returns the surface with `f` applied to each height and to the levels; `f` must not reverse their order.
-    pub(crate) fn map(&self, f: impl Fn(f64) -> f64) -> Self {
+    pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
         let heights = self.heights.iter().map(|&h| f(h));
         let heights = heights.map(|h| if h.abs() <= LARGEST { h } else { f64::NAN }).collect();
         Self { heights, levels: self.levels.map(|levels| levels.map(&f)), ..*self }
@@ -266,7 +266,7 @@ impl HeightField {
     /// look up.
     ///
     /// A face of the mesh is a cell. Triangles that are cut at a level have vertices of their own. Cost: one pass.
-    pub(crate) fn to_mesh(&self, origin: DVec3) -> Mesh {
+    pub fn to_mesh(&self, origin: DVec3) -> Mesh {
         let (mut positions, mut numbers) = (Vec::new(), Vec::with_capacity(self.heights.len()));
         for row in 0..self.rows {
             for column in 0..self.columns {

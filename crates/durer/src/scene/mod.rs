@@ -103,7 +103,7 @@ pub struct Instance {
 
 impl Instance {
     /// Creates an instance of a mesh in its own coordinates, without a name.
-    pub(crate) const fn of(mesh: usize) -> Self {
+    pub const fn of(mesh: usize) -> Self {
         Self { mesh, world_from_mesh: DMat4::IDENTITY, name: String::new() }
     }
 }

@@ -15,7 +15,7 @@ impl Mesh {
     /// within 40° of its own face. Vertices are no longer shared.
     ///
     /// A mesh with normals, and lines and points, are returned as they are.
-    pub(crate) fn with_smooth_normals(&self) -> Self {
+    pub fn with_smooth_normals(&self) -> Self {
         if !self.normals.is_empty() || self.topology != Topology::Triangles {
             return self.clone();
         }

@@ -233,7 +233,7 @@ pub fn premultiply(color: Vec4) -> Vec4 {
 
 /// Converts premultiplied alpha to straight alpha; where alpha is not above 0, to transparent black.
 #[inline(always)]
-pub(crate) fn unpremultiply(color: Vec4) -> Vec4 {
+pub fn unpremultiply(color: Vec4) -> Vec4 {
     if color.w > 0.0 {
         Vec4::new(color.x / color.w, color.y / color.w, color.z / color.w, color.w)
     } else {

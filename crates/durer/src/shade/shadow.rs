@@ -148,7 +148,7 @@ impl ShadowMap {
     ///
     /// `face` is the unit normal of the surface, turned to the light's side.
     #[inline]
-    pub(crate) fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
+    pub fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
         self.reach_traced(position, face, &mut NoTrace)
     }
 

@@ -159,7 +159,7 @@ impl Placer {
     }
 
     /// Keeps labels off a place, which others may be kept off too.
-    pub(crate) fn reserve(&mut self, place: Rect) {
+    pub fn reserve(&mut self, place: Rect) {
         self.take(place);
     }
 

@@ -93,7 +93,7 @@ pub struct Layout {
 }
 
 /// More cells than this on one screen are refused.
-pub(crate) const MAX_CELLS: usize = 4096;
+pub const MAX_CELLS: usize = 4096;
 
 impl Layout {
     /// Creates a grid of `columns` × `rows` cells with their names, row by row.

@@ -101,7 +101,7 @@ pub fn replay(steps: &[Step]) -> Vec<DVec2> {
 /// assert_eq!(mapped, [DVec2::splat(150.0)]);
 /// # Ok::<(), durer::Error>(())
 /// ```
-pub(crate) fn map(
+pub fn map(
     window: &Window,
     viewport: &Viewport,
     points: &[DVec2],

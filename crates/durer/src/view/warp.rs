@@ -49,7 +49,7 @@ pub const INFO: Info = Info {
 
 /// Pixels on a side that a pixel may cover in the new picture. A near camera does not need more, and
 /// wrong depths cannot make the work grow without bound.
-pub(crate) const LARGEST: f64 = 64.0;
+pub const LARGEST: f64 = 64.0;
 
 /// Half the side of a pixel's square, in pixels: a little more than half, so that squares with different
 /// slopes leave no gap.

@@ -67,7 +67,7 @@ impl ClipBox<3> {
 
 impl ClipBox<3> {
     /// Returns the six planes of the border, normals inwards: smallest and largest x, y, z.
-    pub(crate) fn planes(&self) -> [Plane; 6] {
+    pub fn planes(&self) -> [Plane; 6] {
         std::array::from_fn(|i| {
             let (axis, upper) = (i / 2, i % 2);
             let sign = if upper == 0 { 1.0 } else { -1.0 };

@@ -64,7 +64,7 @@ impl ConvexPolygon {
     }
 
     /// Returns the vertices, counter-clockwise.
-    pub(crate) fn vertices(&self) -> &[DVec2] {
+    pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
     }
 

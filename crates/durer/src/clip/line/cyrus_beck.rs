@@ -92,7 +92,7 @@ pub fn clip_polygon(
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate; the same for a plane
 /// that has one.
-pub(crate) fn clip_polyhedron(
+pub fn clip_polyhedron(
     window: &[Plane],
     segment: Segment<DVec3>,
     t: &mut impl Tracer<Step<DVec3>>,

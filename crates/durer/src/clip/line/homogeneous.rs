@@ -56,7 +56,7 @@ pub struct Options;
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
-pub(crate) fn clip(
+pub fn clip(
     window: &Rect,
     segment: Segment<DVec2>,
     t: &mut impl Tracer<Step<DVec3>>,

@@ -66,7 +66,7 @@ pub fn clip(
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
-pub(crate) fn clip_box(
+pub fn clip_box(
     window: &ClipBox<3>,
     segment: Segment<DVec3>,
     t: &mut impl Tracer<Step<DVec3>>,

@@ -72,12 +72,12 @@ impl PixelWindow {
     }
 
     /// Returns the pixel with the smallest coordinates.
-    pub(crate) fn min(&self) -> IVec2 {
+    pub fn min(&self) -> IVec2 {
         self.min
     }
 
     /// Returns the pixel with the largest coordinates.
-    pub(crate) fn max(&self) -> IVec2 {
+    pub fn max(&self) -> IVec2 {
         self.max
     }
 

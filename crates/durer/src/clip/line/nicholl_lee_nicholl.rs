@@ -107,7 +107,7 @@ pub fn replay(mut segment: Segment<DVec2>, steps: &[Step]) -> Option<Segment<DVe
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
-pub(crate) fn clip(
+pub fn clip(
     window: &Rect,
     segment: Segment<DVec2>,
     t: &mut impl Tracer<Step>,

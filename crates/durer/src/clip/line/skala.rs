@@ -157,7 +157,7 @@ pub fn clip(
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
-pub(crate) fn clip_polygon(
+pub fn clip_polygon(
     window: &ConvexPolygon,
     segment: Segment<DVec2>,
     t: &mut impl Tracer<Step>,

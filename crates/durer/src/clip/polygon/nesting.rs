@@ -93,7 +93,7 @@ impl NestingTree {
     }
 
     /// Returns whether there is no ring.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.parents.is_empty()
     }
 

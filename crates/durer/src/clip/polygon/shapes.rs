@@ -61,7 +61,7 @@ impl<P> Shapes<P> {
     }
 
     /// Removes all polygons; the memory stays.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.points.clear();
         self.ring_ends.clear();
         self.polygon_ends.clear();

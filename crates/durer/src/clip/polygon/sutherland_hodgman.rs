@@ -110,7 +110,7 @@ impl<const K: usize> Vertex<3> for (DVec3, [f64; K]) {
 
 /// One stage, which takes the vertices of a ring one by one and passes on those of the part inside.
 #[derive(Debug, Clone)]
-pub(crate) struct Stage<H, V> {
+pub struct Stage<H, V> {
     border: H,
     first: Option<(V, bool)>,
     previous: Option<(V, bool)>,
@@ -118,7 +118,7 @@ pub(crate) struct Stage<H, V> {
 
 impl<H, V> Stage<H, V> {
     /// Creates a stage that has seen nothing.
-    pub(crate) fn new(border: H) -> Self {
+    pub fn new(border: H) -> Self {
         Self { border, first: None, previous: None }
     }
 
@@ -231,18 +231,18 @@ pub fn replay<V: Copy>(steps: &[Step<V>]) -> Vec<V> {
 /// assert_eq!(ring, [DVec2::new(0., 0.), DVec2::new(1., 0.), DVec2::new(1., 2.), DVec2::new(0., 1.)]);
 /// ```
 #[derive(Debug, Clone)]
-pub(crate) struct Pipeline<H, V> {
+pub struct Pipeline<H, V> {
     stages: Vec<Stage<H, V>>,
 }
 
 impl<H, V> Pipeline<H, V> {
     /// Creates one stage for each border, in this order.
-    pub(crate) fn new(borders: impl IntoIterator<Item = H>) -> Self {
+    pub fn new(borders: impl IntoIterator<Item = H>) -> Self {
         Self { stages: borders.into_iter().map(Stage::new).collect() }
     }
 
     /// Passes a vertex of the ring to the first stage; `out` gets the output of the last.
-    pub(crate) fn push<const N: usize>(
+    pub fn push<const N: usize>(
         &mut self,
         vertex: V,
         out: &mut impl FnMut(V),
@@ -255,7 +255,7 @@ impl<H, V> Pipeline<H, V> {
     }
 
     /// Ends the ring; the pipeline is then ready for the next.
-    pub(crate) fn close<const N: usize>(&mut self, out: &mut impl FnMut(V), t: &mut impl Tracer<Step<V>>)
+    pub fn close<const N: usize>(&mut self, out: &mut impl FnMut(V), t: &mut impl Tracer<Step<V>>)
     where
         H: HalfSpace<N>,
         V: Vertex<N>,
@@ -304,7 +304,7 @@ pub fn clip<V: Vertex<2>>(
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
-pub(crate) fn clip_polygon<V: Vertex<2>>(
+pub fn clip_polygon<V: Vertex<2>>(
     window: &ConvexPolygon,
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -317,7 +317,7 @@ pub(crate) fn clip_polygon<V: Vertex<2>>(
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
-pub(crate) fn clip_shapes(
+pub fn clip_shapes(
     window: &Rect,
     shapes: &Shapes,
     t: &mut impl Tracer<Step<DVec2>>,
@@ -371,7 +371,7 @@ fn has_area(ring: &[DVec2]) -> bool {
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
-pub(crate) fn clip_box<V: Vertex<3>>(
+pub fn clip_box<V: Vertex<3>>(
     window: &ClipBox<3>,
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -383,7 +383,7 @@ pub(crate) fn clip_box<V: Vertex<3>>(
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex or plane with a NaN or infinite number.
-pub(crate) fn clip_polyhedron<V: Vertex<3>>(
+pub fn clip_polyhedron<V: Vertex<3>>(
     window: &[Plane],
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,

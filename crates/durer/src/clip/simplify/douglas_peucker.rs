@@ -127,7 +127,7 @@ pub fn simplify(
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
-pub(crate) fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
+pub fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
     check(points, 0.0)?;
     let mut weights = vec![0.0; points.len()];
     for end in [weights.len().checked_sub(1), Some(0)].into_iter().flatten() {

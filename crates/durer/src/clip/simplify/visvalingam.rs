@@ -107,7 +107,7 @@ pub fn simplify(
 ///
 /// # Errors
 /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
-pub(crate) fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
+pub fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
     check(points, 0.0)?;
     Ok(run(points, f64::INFINITY, &mut NoTrace))
 }

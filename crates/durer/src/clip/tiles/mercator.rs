@@ -29,7 +29,7 @@ pub fn project(degrees: DVec2) -> DVec2 {
 }
 
 /// Returns the longitude and latitude in degrees of a place.
-pub(crate) fn unproject(place: DVec2) -> DVec2 {
+pub fn unproject(place: DVec2) -> DVec2 {
     DVec2::new((place.x - 0.5) * 360.0, latitude(1.0 - 2.0 * place.y))
 }
 

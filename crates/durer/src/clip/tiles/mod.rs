@@ -70,7 +70,7 @@ impl Tile {
     /// let ids = Tile::WORLD.children().map(Tile::id);
     /// assert_eq!(ids, [1, 2, 3, 4]);
     /// ```
-    pub(crate) fn children(self) -> [Self; 4] {
+    pub fn children(self) -> [Self; 4] {
         let (zoom, x, y) = (self.zoom + 1, 2 * self.x, 2 * self.y);
         let mut children =
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { zoom, x: x + i, y: y + j });

@@ -126,7 +126,7 @@ impl Step {
     }
 
     /// Returns the pixels that the step lights.
-    pub(crate) fn pixels(&self) -> &[IVec2] {
+    pub fn pixels(&self) -> &[IVec2] {
         match self {
             Self::Start { pixel, .. } | Self::Last { pixel, .. } => std::slice::from_ref(pixel),
             Self::Pair { pixels, .. } => pixels,

@@ -33,7 +33,7 @@ pub const INFO: Info = Info {
 };
 
 /// Calls `plot` for the pixels of the line between two pixels, both included.
-pub(crate) fn draw(
+pub fn draw(
     from: IVec2,
     to: IVec2,
     options: &Options,

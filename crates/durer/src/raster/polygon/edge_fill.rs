@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
 };
 
 /// The facts of fence fill.
-pub(crate) const FENCE: Info = Info {
+pub const FENCE: Info = Info {
     name: "fence-fill",
     title: "Fence fill",
     authors: "M. R. Dunlavey",

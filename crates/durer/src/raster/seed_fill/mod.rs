@@ -286,7 +286,7 @@ pub fn boundary_fill<P: PixelValue>(
 /// # Errors
 /// [`Error::Memory`](crate::Error::Memory) if the budget that the image is charged to is too small for the stack, and its
 /// reason if that work is stopped. The image is then as it was.
-pub(crate) fn fill_where<P: Copy>(
+pub fn fill_where<P: Copy>(
     image: &mut Pixels<P>,
     seed: (u32, u32),
     value: P,

@@ -38,7 +38,7 @@ impl Default for Options {
 }
 
 /// The largest side: 1 GB a map.
-pub(crate) const MAX_SIDE: u32 = 16_384;
+pub const MAX_SIDE: u32 = 16_384;
 
 /// Cosine of the widest half angle that one map can cover without wasting most of its texels.
 const WIDEST: f32 = 0.5;
@@ -55,7 +55,7 @@ const NEAR: f64 = 1e-3;
 ///
 /// # Errors
 /// [`Error::Parameter`] for a side of 0, [`Error::TooLarge`] above [`MAX_SIDE`], and the errors of [`SurfaceInput::new`].
-pub(crate) fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Result<()> {
+pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Result<()> {
     cast_within(&Work::default(), scene, lights, options)
 }
 

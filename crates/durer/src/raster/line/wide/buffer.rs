@@ -112,7 +112,7 @@ pub fn of_polygons(shapes: &Shapes, rule: WindingRule, options: &Options) -> Res
 ///
 /// # Errors
 /// As [`of_polygons`].
-pub(crate) fn of_lines<'a>(
+pub fn of_lines<'a>(
     lines: impl IntoIterator<Item = &'a [DVec2]>,
     options: &Options,
 ) -> Result<Shapes> {

@@ -56,7 +56,7 @@ pub struct Options {
 /// arrives, as painters exaggerate it: contacts become dark, and open surfaces stay unchanged.
 ///
 /// The same bytes at every SIMD level and for any number of threads.
-pub(crate) fn apply(
+pub fn apply(
     view: &View,
     (depth, normal): (&Pixels<f32>, &Pixels<[f32; 3]>),
     options: &Options,

@@ -216,13 +216,13 @@ pub struct PrimaryRays<'a> {
 
 impl<'a> PrimaryRays<'a> {
     /// Builds the hierarchy of boxes. Cost: O(n log n).
-    pub(crate) fn new(input: &'a SurfaceInput<'a>) -> Self {
+    pub fn new(input: &'a SurfaceInput<'a>) -> Self {
         Self { input, rays: ScreenRays::new(&input.triangles, input.view) }
     }
 
     /// Returns the first hits of the rays through the pixels' centres: column and row, window depth
     /// and item, row by row; pixels that show nothing are left out. Cost: about O(log n) per pixel.
-    pub(crate) fn hits(&self) -> Vec<([i32; 2], (f32, u32))> {
+    pub fn hits(&self) -> Vec<([i32; 2], (f32, u32))> {
         let Self { input, rays } = self;
         let options = Options::default();
         with_lighting(

@@ -101,7 +101,7 @@ impl Default for Options {
 
 /// Seconds spent in the two halves of the work, and the fate of the triangles.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Report {
+pub struct Report {
     /// Counts of the triangles by their treatment.
     pub counts: Counts,
     /// Vertices, clipping, set-up, binning.
@@ -115,7 +115,7 @@ pub(crate) struct Report {
 /// # Errors
 /// [`crate::Error::Limit`] if the scene has too many primitives to number, [`crate::Error::Memory`] if the budget
 /// has no room for its triangles on the screen, and the error of stopped work.
-pub(crate) fn render(
+pub fn render(
     scene: &Scene,
     view: &View,
     lights: &PreparedLights,
