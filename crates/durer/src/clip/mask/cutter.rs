@@ -96,7 +96,7 @@ pub struct Cut {
 
 impl<'a> Cutter<'a> {
     /// Creates a cutter that keeps the part of geometries inside the mask, by the even-odd rule.
-    pub(crate) fn new(mask: &'a Mask) -> Self {
+    pub fn new(mask: &'a Mask) -> Self {
         Self { mask, op: BooleanOp::Intersection, rules: Rules::default(), algorithm: None }
     }
 

@@ -84,7 +84,7 @@ impl Mask {
     }
 
     /// Returns whether a box is wholly inside; `None` if the mask's border comes near.
-    pub(crate) fn side(&self, bounds: &Rect) -> Option<bool> {
+    pub fn side(&self, bounds: &Rect) -> Option<bool> {
         if !self.meets(bounds) {
             return Some(false);
         }
