@@ -7,10 +7,11 @@ use durer::math::{DAffine2, DVec2, IVec2};
 use durer::raster::coverage::{self, FillRule, Overlap};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
 use durer::raster::line::{self, LineRasterizer};
-use durer::raster::paint::{Canvas, Gradient, MaskKind, Options, Paint, Shape, Spread};
+use durer::raster::paint::{Canvas, MaskKind, Options, Paint};
 use durer::raster::polygon::{self, PolygonRasterizer};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, boundary_fill, flood_fill};
 use durer::target::Pixels;
+use durer::target::gradient::{Gradient, Shape, Spread};
 use durer::trace::NoTrace;
 use std::sync::Arc;
 

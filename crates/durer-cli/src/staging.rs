@@ -5,13 +5,12 @@ use crate::options::ViewArgs;
 use crate::values;
 use clap::{Args, ValueEnum};
 use durer::math::Vec4;
-use durer::pipeline::{
-    self, EdgeStyle, RenderOptions, add_axes, add_grid, add_ground, ambient_occlusion,
-};
+use durer::pipeline::{self, EdgeStyle, RenderOptions, add_axes, add_grid, add_ground};
 use durer::scene::{AlphaMode, Camera, Material, Scene, ShadingModel};
 use durer::target::Framebuffer;
 use durer::view::fit;
 use durer::view::projection::drawn_bounds;
+use durer::visibility::surface::ambient_occlusion;
 use durer::work::{Charge, Work};
 
 /// Distance, as a part of the model's radius, within which surfaces occlude each other.

@@ -140,7 +140,7 @@ fn need_in_words(need: u64, budget: u64) -> String {
 
 /// Returns a number of bytes as people read it, with at most one digit behind the point: `1.2 MB`, `640 MB`; powers of
 /// 1024.
-pub fn in_words(bytes: u64) -> String {
+fn in_words(bytes: u64) -> String {
     let units = ["bytes", "kB", "MB", "GB", "TB", "PB", "EB"];
     let (mut value, mut unit) = (bytes as f64, 0);
     while value >= 999.95 {
@@ -154,6 +154,14 @@ pub fn in_words(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_are_told_shortly() {
+        let told = [0, 999, 1000, 1536, 64 << 20, 67_500_000, 1 << 30, u64::MAX].map(in_words);
+        let expected =
+            ["0 bytes", "999 bytes", "1 kB", "1.5 kB", "64 MB", "64.4 MB", "1 GB", "16 EB"];
+        assert_eq!(told, expected);
+    }
 
     #[test]
     fn needs_differ_from_the_budget_in_words() {

@@ -191,7 +191,7 @@ struct Readme;
 #[doc = include_str!("../../../README.md")]
 struct Repository;
 
-pub mod error;
+mod error;
 pub mod info;
 pub mod math;
 #[doc(hidden)]

@@ -10,11 +10,10 @@ use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::view::View;
-use durer::visibility::surface::Cull;
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::method::{self, SurfaceMethod, render_with};
 use durer::visibility::surface::ray::PrimaryRays;
-use durer::visibility::surface::setup::Filter;
+use durer::visibility::surface::{
+    Cull, Filter, Options, SurfaceInput, SurfaceMethod, render_with,
+};
 use std::path::Path;
 
 const SIDE: u32 = 1024;
@@ -128,7 +127,7 @@ fn picture(
     let listed = if method == SurfaceMethod::ZBuffer { &nothing } else { scene };
     let input = SurfaceInput { scene, ..SurfaceInput::new(listed, view, filter)? };
     let mut framebuffer = Framebuffer::new(SIDE, SIDE);
-    let options = method::Options { samples, ..Default::default() };
+    let options = Options { samples, ..Default::default() };
     render_with(method, &input, lights, &options, &mut framebuffer, &mut NoTrace)?;
     Ok(framebuffer)
 }

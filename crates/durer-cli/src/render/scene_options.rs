@@ -6,8 +6,9 @@ use crate::options::Samples;
 use crate::render_args::RenderArgs;
 use crate::staging;
 use crate::values::Algorithm;
-use durer::pipeline::{Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
+use durer::pipeline::{Lighting, Marks, RenderOptions, SurfaceMethod};
 use durer::scene::{Camera, Scene};
+use durer::visibility::surface::a_buffer::Mask;
 
 /// Returns the options for a picture, given the model, the part that the view is fitted to, and the whole scene.
 pub fn render_options(

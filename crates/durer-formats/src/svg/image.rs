@@ -3,8 +3,9 @@
 use crate::{Error, Limits, Place, Result};
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::{Filter, Paint, Pattern, Spread};
+use durer::raster::paint::{Filter, Paint, Pattern};
 use durer::target::Pixels;
+use durer::target::gradient::Spread;
 use std::sync::Arc;
 
 /// Returns an image as a paint, its frame, and how many bytes it takes.

@@ -2,8 +2,9 @@
 
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::{Blend, Canvas, Filter, Gradient, Paint, Pattern, Shape, Spread};
+use durer::raster::paint::{Blend, Canvas, Filter, Paint, Pattern};
 use durer::target::Pixels;
+use durer::target::gradient::{Gradient, Shape, Spread};
 use std::sync::Arc;
 use usvg::tiny_skia_path::{self, PathSegment};
 

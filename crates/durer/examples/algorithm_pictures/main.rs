@@ -10,8 +10,8 @@ use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::surface::method::{Options, SurfaceMethod, render_with};
-use durer::visibility::surface::{Cull, depth_sort, input::SurfaceInput, setup::Filter};
+use durer::visibility::surface::{Cull, Filter, SurfaceInput, depth_sort};
+use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 use durer_formats::png::{Compression, write_color};
 
 const SIZE: [u32; 2] = [288, 216];

@@ -4,7 +4,7 @@ use durer::math::{DVec2, IVec2};
 use durer::raster::line::{Options, bresenham};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
-use durer::visibility::surface::method::Step;
+use durer::visibility::surface::Step;
 use durer::visibility::surface::{scan_line_z as scan, spanning_scan_line as spanning, warnock};
 
 const INK: [u8; 4] = [20, 20, 30, 255];

@@ -6,7 +6,7 @@ mod chart;
 mod terrain;
 
 use chart::{Axis, Chart};
-use durer::visibility::surface::method::SurfaceMethod;
+use durer::visibility::surface::SurfaceMethod;
 use durer_formats::png::{Compression, write_color};
 use terrain::{steps, terrain};
 

@@ -4,8 +4,8 @@ use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
 use durer::target::Framebuffer;
 use durer::trace::Recorder;
-use durer::visibility::surface::method::{Options, SurfaceMethod, render_with};
-use durer::visibility::surface::{Cull, input::SurfaceInput, setup::Filter};
+use durer::visibility::surface::{Cull, Filter, SurfaceInput};
+use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 
 /// Returns a bumpy surface of 2 n² triangles that faces the eye.
 pub fn terrain(n: u32) -> Scene {

@@ -27,7 +27,11 @@ pub enum Source {
 impl Source {
     /// Returns the source of a point on the edge between two input points, each given by index and
     /// place.
-    pub(crate) fn on_edge(point: DVec2, (from, a): (usize, DVec2), (to, b): (usize, DVec2)) -> Self {
+    pub(crate) fn on_edge(
+        point: DVec2,
+        (from, a): (usize, DVec2),
+        (to, b): (usize, DVec2),
+    ) -> Self {
         if point == a {
             return Self::Vertex(from);
         }

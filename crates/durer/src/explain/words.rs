@@ -165,7 +165,10 @@ impl Template {
     }
 
     /// Returns the caption of the template with values.
-    pub(crate) fn with<const N: usize>(&'static self, values: [(&'static str, Value); N]) -> Caption {
+    pub(crate) fn with<const N: usize>(
+        &'static self,
+        values: [(&'static str, Value); N],
+    ) -> Caption {
         Caption { template: self, values: values.into() }
     }
 }

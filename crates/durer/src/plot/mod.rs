@@ -6,8 +6,8 @@
 mod axes;
 mod cells;
 mod color_bar;
-pub mod color_map;
-pub mod ticks;
+pub(crate) mod color_map;
+pub(crate) mod ticks;
 
 pub use color_map::ColorMap;
 

@@ -14,7 +14,9 @@ pub mod paint;
 pub mod point;
 pub mod polygon;
 pub mod seed_fill;
-pub mod span;
+pub(crate) mod span;
 pub mod stipple;
 pub mod triangle;
 pub mod triangulate;
+
+pub use span::Span;

@@ -26,7 +26,7 @@ pub enum Surroundings {
 
 /// A surrounding that gets brighter upwards.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Environment {
+pub(crate) struct Environment {
     /// Unit vector to the zenith.
     pub up: Vec3,
     /// Light from all around on a matte surface: at 1 a white one appears white.
@@ -45,7 +45,7 @@ pub struct Environment {
 
 /// Reflection in mirrors.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub enum Mirrored {
+pub(crate) enum Mirrored {
     /// Sky and ground.
     #[default]
     Sky,

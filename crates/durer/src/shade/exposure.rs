@@ -73,7 +73,12 @@ impl PreparedLights {
     /// surface where much of it falls on the scene is nearly white: see [the module](self). If there is no ambient
     /// light, [`DEFAULT_AMBIENT`](super::light::DEFAULT_AMBIENT) is added as it is. The scene must pass
     /// [`Scene::check`].
-    pub(crate) fn exposed(around: Around<'_>, lights: &[Light], scene: &Scene, camera: &Camera) -> Self {
+    pub(crate) fn exposed(
+        around: Around<'_>,
+        lights: &[Light],
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Self {
         let mut prepared = Self::without_ambient(around, lights, camera);
         let ambient = ambient(lights);
         let Metered { factor, from_points } =

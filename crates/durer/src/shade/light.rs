@@ -19,7 +19,7 @@ pub(crate) const DEFAULT_AMBIENT: f32 = 0.1;
 
 /// A light from infinitely far away.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DirectionalLight {
+pub(crate) struct DirectionalLight {
     /// Unit vector towards the light.
     pub to_light: Vec3,
     /// Linear colour times intensity.
@@ -28,7 +28,7 @@ pub struct DirectionalLight {
 
 /// A point light or, with a cone, a spot light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointLight {
+pub(crate) struct PointLight {
     /// Relative to [`PreparedLights::origin`].
     pub position: Vec3,
     /// Linear colour times intensity at a distance of one.
@@ -48,19 +48,19 @@ pub struct PreparedLights {
     /// World space; positions handed to shading are relative to it. It is the eye.
     pub origin: DVec3,
     /// Ambient light and the surroundings that mirrors show.
-    pub environment: Environment,
+    pub(crate) environment: Environment,
     /// Lights from infinitely far away.
-    pub directional: Vec<DirectionalLight>,
+    pub(crate) directional: Vec<DirectionalLight>,
     /// Point and spot lights.
-    pub points: Vec<PointLight>,
+    pub(crate) points: Vec<PointLight>,
     /// Shadow maps of the lights; empty if none throws shadows.
-    pub shadows: ShadowMaps,
+    pub(crate) shadows: ShadowMaps,
     /// Changes to light before it is shown.
-    pub tone: Tone,
+    pub(crate) tone: Tone,
 }
 
 /// A panorama around a scene, and the scene's axis that points up in it.
-pub type Around<'a> = Option<(&'a Arc<Panorama>, UpAxis)>;
+pub(crate) type Around<'a> = Option<(&'a Arc<Panorama>, UpAxis)>;
 
 /// Squared distance below which a point light does not get brighter, which keeps its strength finite.
 const NEAREST2: f32 = 1e-8;
@@ -68,7 +68,7 @@ const NEAREST2: f32 = 1e-8;
 impl PreparedLights {
     /// Creates surroundings and lights from far away, seen from the origin, for tests.
     #[cfg(test)]
-    pub fn far(environment: Environment, directional: Vec<DirectionalLight>) -> Self {
+    pub(crate) fn far(environment: Environment, directional: Vec<DirectionalLight>) -> Self {
         let (shadows, tone) = (ShadowMaps::default(), Tone::default());
         Self { origin: DVec3::ZERO, environment, directional, points: Vec::new(), shadows, tone }
     }

@@ -208,7 +208,7 @@ impl ShadowMap {
 
 /// The maps of all lights of a picture; by default none, which means no shadows.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct ShadowMaps {
+pub(crate) struct ShadowMaps {
     /// Maps by the index in [`super::PreparedLights::directional`].
     pub directional: Vec<Vec<ShadowMap>>,
     /// Maps by the index in [`super::PreparedLights::points`]; several maps look in several directions.

@@ -12,7 +12,7 @@ use crate::scene::{Camera, UpAxis};
 
 /// Position of a studio.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Studio {
+pub(crate) struct Studio {
     /// Unit vectors to the right, up and to the front, in world space.
     axes: [Vec3; 3],
 }

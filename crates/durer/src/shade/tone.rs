@@ -6,7 +6,7 @@ use super::tone_map::{self, ToneMap};
 /// Changes to light before it is shown. Surfaces without light, which are shown as they are, are not
 /// changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tone {
+pub(crate) struct Tone {
     /// Factor of all light, 1 = as it is.
     pub gain: f32,
     /// Mapping from the range of brightness to that of a display.

@@ -85,11 +85,6 @@ impl PicturePlane {
         self.perspective
     }
 
-    /// Returns the position of the eye, world space; for parallel projection, a point in front.
-    pub(crate) fn eye(&self) -> DVec3 {
-        self.eye
-    }
-
     /// Returns the direction of the line of sight through a point of the world; not of unit length in perspective.
     pub(crate) fn sight_at(&self, p: DVec3) -> DVec3 {
         if self.perspective { p - self.eye } else { self.axes[2] }
@@ -136,23 +131,6 @@ impl PicturePlane {
     pub(crate) fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
         let ends = cut(|p| self.inside(0, p, 1.0), [a, b].map(|p| self.view_from_world(p)))?;
         Some(ends.map(|p| self.plane_from_view(p).at))
-    }
-
-    /// Converts back from the plane to view space.
-    pub(crate) fn view_from_plane(&self, p: PlanePoint) -> DVec3 {
-        if self.perspective {
-            let w = self.distance * self.distance / (self.distance - p.depth);
-            (p.at * (w / self.distance)).extend(w)
-        } else {
-            p.at.extend(p.depth + self.distance)
-        }
-    }
-
-    /// Converts back from the plane to world space.
-    pub(crate) fn world_from_plane(&self, p: PlanePoint) -> DVec3 {
-        let v = self.view_from_plane(p);
-        let [right, up, sight] = self.axes;
-        self.eye + right * v.x + up * v.y + sight * v.z
     }
 
     /// Returns the signed distance of a view-space point from the border `index` (0 near, 1 far, 2…5 left, right,

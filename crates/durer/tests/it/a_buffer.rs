@@ -10,9 +10,9 @@ use durer::shade::{PreparedLights, color};
 use durer::target::Framebuffer;
 use durer::trace::Recorder;
 use durer::view::View;
+use durer::visibility::surface::Filter;
+use durer::visibility::surface::SurfaceInput;
 use durer::visibility::surface::a_buffer::{self, Mask, Options, Step};
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::setup::Filter;
 
 const FILTER: Filter = Filter::new(durer::pipeline::Cull::None, 128);
 

@@ -11,9 +11,9 @@ use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
 use durer::view::cull::Face;
 use durer::visibility::back_face::{Eye, Options, Step, remove, remove_of_scene};
-use durer::visibility::surface::input::SurfaceInput;
+use durer::visibility::surface::SurfaceInput;
 use durer::visibility::surface::scan_line_z;
-use durer::visibility::surface::setup::{Filter, ScreenTriangle};
+use durer::visibility::surface::{Filter, ScreenTriangle};
 use proptest::prelude::*;
 
 fn input<'a>(scene: &'a Scene, view: &'a View, cull: Cull) -> SurfaceInput<'a> {

@@ -3,11 +3,12 @@
 use crate::scenes::{self, Numbers};
 use crate::surface_scenes::{Prepared, of_triangles};
 use durer::math::{Vec3, Vec4};
-use durer::pipeline::{Mask, RenderOptions, Samples, SurfaceMethod, render};
+use durer::pipeline::{RenderOptions, Samples, SurfaceMethod, render};
 use durer::scene::{AlphaMode, Camera, Material, Part, Projection, Scene, ShadingModel};
 use durer::shade::color::{encode_rgba8, premultiply};
 use durer::target::Framebuffer;
 use durer::trace::NoTrace;
+use durer::visibility::surface::a_buffer::Mask;
 use durer::visibility::surface::warnock;
 
 /// Returns random triangles, every second one blended, unlit.

@@ -4,15 +4,15 @@
 use crate::scenes::{instance, options, sphere};
 use durer::math::{DMat4, DVec3};
 use durer::pipeline::Cull;
-use durer::raster::span::Span;
+use durer::raster::Span;
 use durer::scene::Scene;
 use durer::shade::PreparedLights;
 use durer::target::{Framebuffer, NO_ITEM};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
+use durer::visibility::surface::Filter;
+use durer::visibility::surface::SurfaceInput;
 use durer::visibility::surface::depth_sort::{ScreenPolygon, Step, order, order_after};
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::setup::Filter;
 use durer::visibility::surface::spanning_scan_line as spanning;
 
 const SIDE: u32 = 64;

@@ -3,10 +3,11 @@
 use crate::scenes;
 use durer::pipeline::{
     Exposure, RenderOptions, Report, Samples, Shading, SurfaceMethod, Surroundings, ToneMap,
-    ambient_occlusion, render, render_into,
+    render, render_into,
 };
 use durer::scene::Scene;
 use durer::target::Framebuffer;
+use durer::visibility::surface::ambient_occlusion;
 use std::sync::Arc;
 
 fn picture(scene: &Scene, options: &RenderOptions, threads: usize) -> (Framebuffer, Report) {

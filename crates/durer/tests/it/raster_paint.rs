@@ -6,10 +6,9 @@ use durer::curve::{Contours, Path};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::{FillRule, Overlap};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
-use durer::raster::paint::{
-    Blend, Blending, Canvas, Filter, Gradient, MaskKind, Options, Paint, Pattern, Shape, Spread,
-};
+use durer::raster::paint::{Blend, Blending, Canvas, Filter, MaskKind, Options, Paint, Pattern};
 use durer::target::Pixels;
+use durer::target::gradient::{Gradient, Shape, Spread};
 use durer::trace::NoTrace;
 use std::sync::Arc;
 

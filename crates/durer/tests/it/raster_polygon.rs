@@ -3,11 +3,11 @@
 use crate::raster_coverage::Random;
 use durer::curve::{Contours, Path, flatten};
 use durer::math::DVec2;
+use durer::raster::Span;
 use durer::raster::coverage::FillRule;
 use durer::raster::polygon::{
     Options, PolygonRasterizer, edge_fill, edge_flag, edge_table, ordered_edge_list,
 };
-use durer::raster::span::Span;
 use durer::raster::triangulate::triangulate;
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};

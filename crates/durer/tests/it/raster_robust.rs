@@ -3,6 +3,7 @@
 use crate::raster_coverage::Random;
 use durer::curve::{Contours, Path, flatten, stroke_font};
 use durer::math::{DVec2, IVec2};
+use durer::raster::Span;
 use durer::raster::coverage::{Face, FillRule, fill_partition};
 use durer::raster::line::anti_aliased::{self, SmoothLine};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
@@ -10,7 +11,6 @@ use durer::raster::line::{LineRasterizer, Options as LineOptions};
 use durer::raster::paint::{Canvas, Options, Paint};
 use durer::raster::polygon::{self, PolygonRasterizer};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, boundary_fill, flood_fill};
-use durer::raster::span::Span;
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 

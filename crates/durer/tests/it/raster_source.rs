@@ -3,10 +3,9 @@
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::{Face, FillRule, fill_partition};
-use durer::raster::paint::{
-    Blending, Canvas, Filter, Gradient, Options, Paint, Pattern, Shape, Spread,
-};
+use durer::raster::paint::{Blending, Canvas, Filter, Options, Paint, Pattern};
 use durer::target::Pixels;
+use durer::target::gradient::{Gradient, Shape, Spread};
 use durer::trace::NoTrace;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Triangles: the three rasterizers, the exact oracle, the top-left rule.
 
 use durer::math::DVec2;
+use durer::raster::Span;
 use durer::raster::fixed::{self, GUARD_BAND, snap, unsnap};
-use durer::raster::span::Span;
 use durer::raster::triangle::{
     Options, SnappedTriangle, TriangleRasterizer, edge_function, edge_walking, tiles,
 };

@@ -3,14 +3,14 @@
 use crate::scenes::{instance, sphere};
 use durer::math::{DMat4, DVec2, DVec3, Rect, Vec3, Vec4};
 use durer::pipeline::{
-    EdgeStyle, RenderOptions, Samples, add_axes, add_grid, add_ground, ambient_occlusion,
-    draw_edges, render,
+    EdgeStyle, RenderOptions, Samples, add_axes, add_grid, add_ground, draw_edges, render,
 };
 use durer::scene::{
     AlphaMode, Camera, Material, Mesh, Projection, Scene, ShadingModel, Topology, UpAxis,
 };
 use durer::view::View;
 use durer::view::projection::drawn_bounds;
+use durer::visibility::surface::ambient_occlusion;
 
 /// Returns two walls at a right angle in the line x = z = 0, one along +x, one along +z.
 fn corner() -> Scene {

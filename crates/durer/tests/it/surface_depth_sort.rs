@@ -7,9 +7,9 @@ use durer::math::DVec2;
 use durer::raster::interpolate::polygon_area;
 use durer::scene::Scene;
 use durer::trace::{NoTrace, Recorder};
+use durer::visibility::surface::ScreenTriangle;
+use durer::visibility::surface::SurfaceInput;
 use durer::visibility::surface::depth_sort::{Cut, Options, Step, Test, order, render};
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::setup::ScreenTriangle;
 use std::collections::BTreeSet;
 
 #[test]

@@ -9,7 +9,7 @@ use durer::scene::{Camera, Projection, Scene};
 use durer::target::Framebuffer;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::surface::method::{Options, SurfaceMethod, render_with};
+use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 
 fn scenes() -> Vec<Scene> {
     let random = (400..420).map(random);

@@ -3,11 +3,9 @@
 use crate::scenes::instance;
 use crate::surface_scenes::{Prepared, assert_same_planes, each, random};
 use durer::math::{DVec2, DVec3, Vec3, Vec4};
-use durer::pipeline::Samples;
+use durer::pipeline::{Background, Lighting, RenderOptions, Samples, SurfaceMethod, Surroundings};
 use durer::scene::{AlphaMode, Light, LightKind, Material, Mesh, Part, Scene, ShadingModel};
 use durer::shade::PreparedLights;
-use durer::shade::environment::Mirrored;
-use durer::shade::studio::Studio;
 use durer::target::{Framebuffer, NO_ITEM};
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::surface::ray::{Options, RayKind, Step, render};
@@ -214,16 +212,21 @@ fn mirrors_show_the_studio_where_they_show_nothing_else() {
         1.0,
         Material { model, base_color, metallic, roughness, ..Material::default() },
     );
-    let mut p = in_front(&scene, &[]);
-    let look = durer::visibility::surface::picture::Options {
-        background: durer::pipeline::Background::Color(Vec4::ZERO),
-        ..Default::default()
+    let p = in_front(&scene, &[]);
+    let mirrored = |lights: &[Light], surroundings| {
+        let options = RenderOptions {
+            algorithm: SurfaceMethod::Ray,
+            bounces: 1,
+            lighting: Lighting::Given(lights.to_vec()),
+            surroundings,
+            background: Background::Color(Vec4::ZERO),
+            ..p.options.clone()
+        };
+        color_at(&durer::pipeline::render(&scene, &options).expect("picture").0, 32, 32)
     };
-    let options = Options { look, reflections: true, ..Options::default() };
-    assert_eq!(color_at(&picture(&p, &options), 32, 32)[..3], [0, 0, 0]);
-    p.lights.environment.radiance = Vec3::ONE;
-    p.lights.environment.mirrored = Mirrored::Studio(Studio::of_world(durer::scene::UpAxis::Y));
-    let [r, _, b, a] = color_at(&picture(&p, &options), 32, 32);
+    assert_eq!(mirrored(&[], Surroundings::None)[..3], [0, 0, 0]);
+    let white = Light { kind: LightKind::Ambient, color: Vec3::ONE };
+    let [r, _, b, a] = mirrored(&[white], Surroundings::Studio);
     assert!(r > 100 && r == b && a == 255, "{r} {b} {a}");
 }
 

@@ -3,15 +3,15 @@
 use crate::scenes::{Numbers, instance, options};
 use durer::math::Vec3;
 use durer::pipeline::{Cull, RenderOptions, render};
-use durer::raster::span::Span;
+use durer::raster::Span;
 use durer::raster::triangle::{self, TriangleRasterizer};
 use durer::scene::{Mesh, Scene};
 use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::view::View;
 use durer::view::window::PixelRect;
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::setup::{Filter, ScreenTriangle};
+use durer::visibility::surface::SurfaceInput;
+use durer::visibility::surface::{Filter, ScreenTriangle};
 
 /// Returns the depth of a triangle's plane at a pixel's centre.
 pub fn depth_at(t: &ScreenTriangle, x: i32, y: i32) -> f32 {

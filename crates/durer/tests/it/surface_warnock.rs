@@ -3,12 +3,12 @@
 use crate::surface_scenes::{
     Prepared, assert_same_planes, covered, crossing_quads, depth_at, each, random,
 };
-use durer::raster::span::Span;
+use durer::raster::Span;
 use durer::target::{Framebuffer, NO_ITEM};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::window::PixelRect;
+use durer::visibility::surface::SampleRect;
 use durer::visibility::surface::warnock::{Division, Options, Step, render};
-use durer::visibility::surface::window::Window;
 
 fn picture(p: &Prepared<'_>, options: &Options) -> Framebuffer {
     let mut framebuffer = p.framebuffer();
@@ -28,7 +28,7 @@ fn warnock_agrees_with_the_z_buffer() {
     });
 }
 
-fn samples(w: Window) -> impl Iterator<Item = (i32, i32)> {
+fn samples(w: SampleRect) -> impl Iterator<Item = (i32, i32)> {
     (w.y0..w.y1).flat_map(move |y| (w.x0..w.x1).map(move |x| (x, y)))
 }
 
@@ -55,7 +55,7 @@ fn warnock_can_be_replayed() {
                     samples(window).for_each(|(x, y)| put(x, y, triangle));
                 }
                 Step::Single { window, triangle } => {
-                    let Window { x0, y0, x1, y1 } = window;
+                    let SampleRect { x0, y0, x1, y1 } = window;
                     let clip = PixelRect::new(x0, y0, x1, y1).expect("window");
                     for Span { y, x0, x1 } in covered(&input.triangles[triangle as usize], clip) {
                         (x0..x1).for_each(|x| put(x, y, triangle));

@@ -4,12 +4,13 @@ use crate::scenes;
 use durer::Error;
 use durer::math::Vec4;
 use durer::pipeline::{
-    Background, RenderOptions, Samples, Shadows, Status, SurfaceMethod, ambient_occlusion, render,
-    render_seen, status, survey,
+    Background, RenderOptions, Samples, Shadows, Status, SurfaceMethod, render, render_seen,
+    status, survey,
 };
 use durer::scene::Scene;
 use durer::target::{Framebuffer, Pixels};
 use durer::view::window::PixelRect;
+use durer::visibility::surface::ambient_occlusion;
 use durer::work::Work;
 
 const SIZE: [u32; 2] = [134, 70];

@@ -7,9 +7,9 @@ use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::method::{Options, SurfaceMethod, render_with};
-use durer::visibility::surface::setup::Filter;
+use durer::visibility::surface::Filter;
+use durer::visibility::surface::SurfaceInput;
+use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 use durer::visibility::surface::{scan_line_z, spanning_scan_line};
 
 fn mesh_scene(positions: Vec<Vec3>) -> Scene {

@@ -2,7 +2,6 @@
 
 use crate::scenes;
 use durer::Error;
-use durer::error::in_words;
 use durer::pipeline::{DrawOptions, SurfaceMethod, draw, render};
 use durer::work::{Progress, Work};
 
@@ -77,13 +76,6 @@ fn buffers_that_cannot_be_had_are_errors() {
     let error = Work::default().room_for::<[u8; 4]>("planes", u64::MAX >> 3).unwrap_err();
     assert!(error.to_string().starts_with("planes: the system has no "), "{error}");
     assert!(Work::default().room_for::<u8>("planes", 32 << 20).is_ok());
-}
-
-#[test]
-fn bytes_are_told_shortly() {
-    let told = [0, 999, 1000, 1536, 64 << 20, 67_500_000, 1 << 30, u64::MAX].map(in_words);
-    let expected = ["0 bytes", "999 bytes", "1 kB", "1.5 kB", "64 MB", "64.4 MB", "1 GB", "16 EB"];
-    assert_eq!(told, expected);
 }
 
 #[test]

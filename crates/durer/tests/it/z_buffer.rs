@@ -8,8 +8,8 @@ use durer::scene::{Camera, Mesh, Projection, Scene};
 use durer::target::NO_ITEM;
 use durer::view::View;
 use durer::view::window::PixelRect;
-use durer::visibility::surface::input::SurfaceInput;
-use durer::visibility::surface::setup::Filter;
+use durer::visibility::surface::Filter;
+use durer::visibility::surface::SurfaceInput;
 
 /// Returns the nearest item and its depth at each pixel's centre.
 fn by_the_book(scene: &Scene, view: &View) -> (Vec<u32>, Vec<f32>) {

@@ -13,7 +13,7 @@ use durer::math::DVec3;
 use durer::paper::{self, Break, Page, Pens, Scale};
 use durer::pipeline::{DrawStyle, line_classes};
 use durer::view::projection::NamedView;
-use durer::visibility::line::{self, ClassSet, edge_lines};
+use durer::visibility::line::{self, ClassSet};
 use durer::visibility::object::Weld;
 use durer::visibility::region;
 
@@ -457,7 +457,7 @@ impl From<Hidden> for paper::Hidden {
     }
 }
 
-impl From<Intersections> for edge_lines::Intersections {
+impl From<Intersections> for line::Intersections {
     fn from(which: Intersections) -> Self {
         match which {
             Intersections::Bodies => Self::BetweenBodies,

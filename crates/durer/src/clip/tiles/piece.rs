@@ -53,14 +53,6 @@ impl Body {
         }
     }
 
-    /// Returns all points, to be moved in place.
-    pub(crate) fn points_mut(&mut self) -> &mut [DVec2] {
-        match self {
-            Self::Points(points) | Self::Lines { points, .. } => points,
-            Self::Areas(shapes) => shapes.points_mut(),
-        }
-    }
-
     /// Returns the part in a closed window; parts of areas that have no area are left out. Areas must be valid.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::visibility::polygons::warnock::{INFO, Options, Rule, Step, items};
-use crate::visibility::surface::window::{Relation, Window};
+use crate::visibility::surface::window::{Relation, SampleRect};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: "warnock",
@@ -89,10 +89,10 @@ static DRAW: Template = Template::new(
 #[derive(Clone)]
 struct Windows {
     scene: Scene,
-    stack: Vec<Window>,
-    now: Option<Window>,
+    stack: Vec<SampleRect>,
+    now: Option<SampleRect>,
     relations: Vec<(u32, Relation)>,
-    decided: Vec<Window>,
+    decided: Vec<SampleRect>,
 }
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
@@ -129,9 +129,9 @@ impl Windows {
                 }
             }
             Step::Divide { window, x, y } => {
-                let (Window { x0, y0, x1, y1 }, x, y) = (*window, *x, *y);
+                let (SampleRect { x0, y0, x1, y1 }, x, y) = (*window, *x, *y);
                 let parts = [(x, y, x1, y1), (x0, y, x, y1), (x, y0, x1, y), (x0, y0, x, y)];
-                let parts = parts.map(|(x0, y0, x1, y1)| Window { x0, y0, x1, y1 });
+                let parts = parts.map(|(x0, y0, x1, y1)| SampleRect { x0, y0, x1, y1 });
                 self.stack.extend(parts.iter().filter(|part| !part.is_empty()));
                 DIVIDE.with([("at", at(x, y).into())])
             }
@@ -182,7 +182,7 @@ fn at(x: i32, y: i32) -> DVec2 {
     DVec2::new(x.into(), y.into())
 }
 
-fn frame(window: &Window) -> Vec<DVec2> {
-    let Window { x0, y0, x1, y1 } = *window;
+fn frame(window: &SampleRect) -> Vec<DVec2> {
+    let SampleRect { x0, y0, x1, y1 } = *window;
     [(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)].map(|(x, y)| at(x, y)).to_vec()
 }

@@ -102,11 +102,6 @@ impl Breaks {
         Ok(Self { breaks, gap })
     }
 
-    /// Returns whether there are none.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.breaks.is_empty()
-    }
-
     /// Returns the breaks in a camera's view: those whose axes it sees in their true length; none in perspective.
     pub fn seen_by(&self, camera: &Camera) -> ViewBreaks {
         let [right, up, _] = camera.axes();

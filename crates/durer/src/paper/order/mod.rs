@@ -36,7 +36,7 @@ pub struct Stroke {
 
 /// A stroke in the order of drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Turn {
+pub struct Turn {
     /// Index of the stroke.
     pub index: usize,
     /// The point that it is begun at: of open strokes the first or the last.
@@ -72,7 +72,7 @@ impl Stroke {
 /// let order = turns(&[along(20.0, 11.0), along(0.0, 10.0)], DVec2::ZERO);
 /// assert_eq!(order, [Turn { index: 1, first: 0 }, Turn { index: 0, first: 1 }]);
 /// ```
-pub(crate) fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
+pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     let found = greedy::turns(strokes, start);
     let mut ends = Ends::new(strokes, &found, start);
     let mut way = improve::Way::new(found.len());
@@ -85,38 +85,10 @@ pub(crate) fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
     way.unrolled().into_iter().filter_map(|end| ends.turn(end, strokes)).collect()
 }
 
-/// Returns the strokes themselves in the order of [`turns`], joined where one begins at the end of
-/// another.
-pub(crate) fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
-    let turns = turns(&strokes, start);
-    let mut take = |t: Turn| Some(std::mem::take(strokes.get_mut(t.index)?).begun_at(t.first));
-    joined(turns.into_iter().filter_map(&mut take).collect())
-}
-
-/// Orders strokes and curves as [`ordered`] does, and joins those that follow each other without a gap. Curves may be
+/// Orders strokes and curves as [`turns`] does, and joins those that follow each other without a gap. Curves may be
 /// begun where their pieces meet, circles anywhere on a sixteenth of them.
 pub fn ordered_chains(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
     chain::joined(chain::in_turn(chains, start))
-}
-
-/// Makes one stroke of open ones that follow each other without a gap.
-pub(crate) fn joined(strokes: Vec<Stroke>) -> Vec<Stroke> {
-    let mut found: Vec<Stroke> = Vec::with_capacity(strokes.len());
-    for stroke in strokes {
-        match found.last_mut() {
-            Some(last) if !last.closed && !stroke.closed && meet(last, &stroke) => {
-                let again = usize::from(last.points.last() == stroke.points.first());
-                last.points.extend(stroke.points.into_iter().skip(again));
-            }
-            _ => found.push(stroke),
-        }
-    }
-    found
-}
-
-fn meet(last: &Stroke, next: &Stroke) -> bool {
-    let ends = last.points.last().zip(next.points.first());
-    ends.is_some_and(|(a, b)| a.distance(*b) <= JOIN)
 }
 
 /// Orders the marks of a sheet, layer by layer, for pens that draw one layer after another: within a layer each pen is

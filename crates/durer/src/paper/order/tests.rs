@@ -39,6 +39,16 @@ pub fn scattered(count: usize) -> Vec<Stroke> {
     (0..count).map(&mut stroke).collect()
 }
 
+/// Orders and joins strokes.
+fn ordered(strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
+    let chains = strokes.into_iter().map(Chain::Straight).collect();
+    let straight = |chain| match chain {
+        Chain::Straight(stroke) => stroke,
+        Chain::Curved(_) => panic!("strokes became a curve"),
+    };
+    ordered_chains(chains, start).into_iter().map(straight).collect()
+}
+
 /// Returns the length of pen-up moves between strokes in drawing order.
 fn way(strokes: &[Stroke], turns: &[Turn], start: DVec2) -> f64 {
     let mut at = start;

@@ -11,7 +11,6 @@ mod outline;
 mod source;
 mod target;
 
-pub use crate::target::gradient::{Gradient, Shape, Spread};
 pub use blend::Blend;
 pub use source::{Color, Filter, Paint, Pattern};
 pub use target::PaintTarget;

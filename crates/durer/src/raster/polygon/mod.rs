@@ -14,7 +14,7 @@
 //!
 //! let square = flatten(&Path::rectangle(0.5, 0.5, 2.0, 2.0), 0.1);
 //! let mut spans = Vec::new();
-//! let keep = |s: durer::raster::span::Span| spans.push((s.y, s.x0, s.x1));
+//! let keep = |s: durer::raster::Span| spans.push((s.y, s.x0, s.x1));
 //! PolygonRasterizer::OrderedEdgeList.fill(&square, 8, 8, &Options::default(), keep);
 //! assert_eq!(spans, [(0, 0, 2), (1, 0, 2)]);
 //! ```

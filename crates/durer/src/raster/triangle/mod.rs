@@ -11,7 +11,7 @@
 //! let corners = [DVec2::new(0.5, 0.5), DVec2::new(4.5, 0.5), DVec2::new(0.5, 4.5)];
 //! let triangle = SnappedTriangle::snap(corners).unwrap();
 //! let mut pixels = 0;
-//! let count = |s: durer::raster::span::Span| pixels += s.x1 - s.x0;
+//! let count = |s: durer::raster::Span| pixels += s.x1 - s.x0;
 //! TriangleRasterizer::Tiles.rasterize(&triangle, &Options::default(), count);
 //! assert_eq!(pixels, 10);
 //! ```

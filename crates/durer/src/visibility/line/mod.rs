@@ -6,7 +6,7 @@ mod bend;
 mod chain;
 mod crease_chain;
 mod crossing;
-pub mod edge_lines;
+pub(crate) mod edge_lines;
 pub mod face_net;
 mod facing;
 mod fading;

@@ -274,11 +274,6 @@ impl Faces {
         self.triangles.len()
     }
 
-    /// Returns whether there are no triangles.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
-    }
-
     /// Returns the distinct vertices, world space. Some may belong to no triangle.
     pub(crate) fn points(&self) -> &[DVec3] {
         &self.points

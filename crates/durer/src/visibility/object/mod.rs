@@ -1,16 +1,16 @@
 //! The scene in the form of object-space solvers: faces with shared vertices, their edges, the bodies that they bound.
 
-pub mod bodies;
-pub mod edges;
-pub mod faces;
+pub(crate) mod bodies;
+pub(crate) mod edges;
+pub(crate) mod faces;
 pub mod orientation;
-pub mod round;
+pub(crate) mod round;
 mod stitch;
-pub mod weld;
+pub(crate) mod weld;
 
 pub use bodies::{Bodies, Body};
 pub use edges::{Edges, Side};
 pub use faces::{FaceRun, Faces};
-pub use orientation::SceneOrientation;
+pub use orientation::scene::SceneOrientation;
 pub use round::{Cylinder, cylinders};
 pub use weld::Weld;

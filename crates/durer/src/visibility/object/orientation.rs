@@ -8,7 +8,7 @@
 //!
 //! Limits: pieces of surface that cannot be oriented (Möbius' strip) stay as they are. Coherence used: edges.
 //!
-//! [`orient`] is the published method on polygons, traced; [`SceneOrientation`] does the same for scenes by the pieces
+//! [`orient`] is the published method on polygons, traced; [`SceneOrientation`](super::SceneOrientation) does the same for scenes by the pieces
 //! and volumes of [`super::Bodies`], welded and stitched.
 //!
 //! ```
@@ -25,9 +25,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 
-mod scene;
-
-pub use scene::SceneOrientation;
+pub(super) mod scene;
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;

@@ -208,7 +208,9 @@ impl Step {
 /// [`Memory`](Error::Memory) where the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let runs = steps.iter().filter_map(|step| match *step {
-        Step::Fill { part, face: Some(face) } => Some((part.x0..part.x1).map(move |x| ([x, part.y], face))),
+        Step::Fill { part, face: Some(face) } => {
+            Some((part.x0..part.x1).map(move |x| ([x, part.y], face)))
+        }
         _ => None,
     });
     screen.painted(runs.flatten())

@@ -18,7 +18,7 @@ use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::Tracer;
 use crate::visibility::surface::warnock::Division;
-use crate::visibility::surface::window::{Relation, Window};
+use crate::visibility::surface::window::{Relation, SampleRect};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -82,14 +82,14 @@ pub enum Step {
     /// A window is examined.
     Look {
         /// The window, in pixels.
-        window: Window,
+        window: SampleRect,
         /// Relation of each polygon that was not outside of the window around it.
         relations: Vec<(u32, Relation)>,
     },
     /// The window is simple.
     Simple {
         /// The window.
-        window: Window,
+        window: SampleRect,
         /// The rule that holds.
         rule: Rule,
         /// The polygon that is drawn, if one is.
@@ -98,7 +98,7 @@ pub enum Step {
     /// The window is divided before a column and a row.
     Divide {
         /// The window.
-        window: Window,
+        window: SampleRect,
         /// First column of the right half.
         x: i32,
         /// First row of the lower half.
@@ -131,7 +131,9 @@ impl Step {
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let runs = steps.iter().filter_map(|step| match *step {
-        Step::Draw { face, span: [y, x0, x1] } => Some((x0..x1).map(move |x| ([x as u32, y as u32], face))),
+        Step::Draw { face, span: [y, x0, x1] } => {
+            Some((x0..x1).map(move |x| ([x as u32, y as u32], face)))
+        }
         _ => None,
     });
     screen.painted(runs.flatten())
@@ -161,7 +163,8 @@ pub fn items(
     let mut listed = faces.len();
     let [x1, y1] =
         [screen.width, screen.height].map(|side| i32::try_from(side).unwrap_or(i32::MAX));
-    let mut waiting = vec![(Window { x0: 0, y0: 0, x1, y1 }, (0..faces.len() as u32).collect())];
+    let mut waiting =
+        vec![(SampleRect { x0: 0, y0: 0, x1, y1 }, (0..faces.len() as u32).collect())];
     while let Some((window, concerned)) = waiting.pop() {
         let concerned: Vec<u32> = concerned;
         listed -= concerned.len();
@@ -186,9 +189,9 @@ pub fn items(
         listed += 4 * concerned.len();
         lists.grow_to((listed * size_of::<u32>()) as u64)?;
         // The upper left one is examined first.
-        let Window { x0, y0, x1, y1 } = window;
+        let SampleRect { x0, y0, x1, y1 } = window;
         for (x0, y0, x1, y1) in [(x, y, x1, y1), (x0, y, x, y1), (x, y0, x1, y), (x0, y0, x, y)] {
-            waiting.push((Window { x0, y0, x1, y1 }, concerned.clone()));
+            waiting.push((SampleRect { x0, y0, x1, y1 }, concerned.clone()));
         }
     }
     Ok(painter.items)
@@ -197,7 +200,7 @@ pub fn items(
 /// Returns the rule by which a window is simple, and the polygon to draw there.
 fn simple(
     faces: &[Face],
-    window: &Window,
+    window: &SampleRect,
     relations: &[(u32, Relation)],
     concerned: &[u32],
 ) -> Option<(Rule, Option<u32>)> {
@@ -220,7 +223,7 @@ fn simple(
 }
 
 /// Returns whether a face is in front of another one's plane at the pixels in all corners of a window.
-fn hides(faces: &[Face], window: &Window, face: u32, other: u32) -> bool {
+fn hides(faces: &[Face], window: &SampleRect, face: u32, other: u32) -> bool {
     let depth = |face: u32, [x, y]: [i32; 2]| faces[face as usize].at(x, y).z;
     window.corners().into_iter().all(|at| {
         let [own, theirs] = [face, other].map(|face| depth(face, at));
@@ -230,8 +233,13 @@ fn hides(faces: &[Face], window: &Window, face: u32, other: u32) -> bool {
 
 /// Returns the column and the row before which a window is divided: its middle, or the corner of a polygon in it that
 /// is nearest to the middle.
-fn division(faces: &[Face], window: &Window, concerned: &[u32], division: Division) -> [i32; 2] {
-    let Window { x0, y0, x1, y1 } = *window;
+fn division(
+    faces: &[Face],
+    window: &SampleRect,
+    concerned: &[u32],
+    division: Division,
+) -> [i32; 2] {
+    let SampleRect { x0, y0, x1, y1 } = *window;
     let middle = [x0 + (x1 - x0) / 2, y0 + (y1 - y0) / 2];
     // Both halves of a side of one pixel are the side itself and nothing.
     let middle =
@@ -269,8 +277,8 @@ impl Cover {
     }
 
     /// Returns the runs within a window.
-    fn within(&self, window: &Window) -> impl Iterator<Item = Span> {
-        let Window { x0, y0, x1, y1 } = *window;
+    fn within(&self, window: &SampleRect) -> impl Iterator<Item = Span> {
+        let SampleRect { x0, y0, x1, y1 } = *window;
         let first = self.spans.partition_point(|span| span.y < y0);
         let rows = self.spans[first..].iter().take_while(move |span| span.y < y1);
         let cut = move |span: &Span| Span { y: span.y, x0: span.x0.max(x0), x1: span.x1.min(x1) };
@@ -286,7 +294,7 @@ struct Painter {
 
 impl Painter {
     /// Returns the relation of faces to a window.
-    fn relations(&self, window: &Window, faces: Vec<u32>) -> Vec<(u32, Relation)> {
+    fn relations(&self, window: &SampleRect, faces: Vec<u32>) -> Vec<(u32, Relation)> {
         let size = i64::from(window.x1 - window.x0) * i64::from(window.y1 - window.y0);
         let relation = |face: u32| {
             let cover = &self.covers[face as usize];
@@ -302,7 +310,7 @@ impl Painter {
     }
 
     /// Draws the part of a face in a window.
-    fn draw(&mut self, face: u32, window: &Window, t: &mut impl Tracer<Step>) {
+    fn draw(&mut self, face: u32, window: &SampleRect, t: &mut impl Tracer<Step>) {
         for Span { y, x0, x1 } in self.covers[face as usize].within(window) {
             t.step(|| Step::Draw { face, span: [y, x0, x1] });
             (x0..x1).for_each(|x| self.items.set(x as u32, y as u32, face));

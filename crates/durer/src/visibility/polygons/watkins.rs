@@ -128,7 +128,9 @@ impl Step {
 /// [`Memory`](crate::Error::Memory) if the screen's budget does not suffice.
 pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
     let runs = steps.iter().filter_map(|step| match *step {
-        Step::Span { face, y, columns: [x0, x1] } => Some((x0..x1).map(move |x| ([x as u32, y as u32], face))),
+        Step::Span { face, y, columns: [x0, x1] } => {
+            Some((x0..x1).map(move |x| ([x as u32, y as u32], face)))
+        }
         _ => None,
     });
     screen.painted(runs.flatten())

@@ -13,7 +13,7 @@ use crate::shade::PreparedLights;
 
 /// Operations of the z-buffer on all triangles of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Comparisons {
+pub(crate) struct Comparisons {
     /// Pixels of all triangles: at each, a depth is compared with the stored one.
     pub compared: u64,
     /// Comparisons that the triangle won, so that its depth was stored; blended surfaces store none.

@@ -3,7 +3,7 @@
 use crate::raster::fixed::SUBPIXELS;
 use crate::raster::span::Span;
 use crate::visibility::surface::setup::ScreenTriangle;
-use crate::visibility::surface::window::{Relation, Window};
+use crate::visibility::surface::window::{Relation, SampleRect};
 
 /// Samples in rows and columns, 2^`shift` a pixel on each axis, at the centres of their squares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,7 +75,7 @@ pub struct Cover {
     step_x: [i64; 3],
     step_y: [i64; 3],
     /// The samples of the bounding box.
-    pub bounds: Window,
+    pub bounds: SampleRect,
 }
 
 impl Cover {
@@ -96,7 +96,7 @@ impl Cover {
             (grid.first_at(lo), grid.first_at(hi + 1))
         };
         let ((x0, x1), (y0, y1)) = (range(&t.x), range(&t.y));
-        Self { edge, step_x, step_y, bounds: Window { x0, y0, x1, y1 } }
+        Self { edge, step_x, step_y, bounds: SampleRect { x0, y0, x1, y1 } }
     }
 
     /// Returns the function of edge `i`, from vertex `i` to the next, at a sample.
@@ -113,7 +113,7 @@ impl Cover {
 
     /// Returns the relation of the triangle to a window that is not empty; `Outside` is certain,
     /// and so is `Surrounding`.
-    pub fn relation(&self, w: &Window) -> Relation {
+    pub fn relation(&self, w: &SampleRect) -> Relation {
         if self.bounds.and(w).is_empty() {
             return Relation::Outside;
         }
@@ -134,7 +134,7 @@ impl Cover {
     }
 
     /// Emits the covered samples of a window, row by row.
-    pub fn spans(&self, w: &Window, mut emit: impl FnMut(Span)) {
+    pub fn spans(&self, w: &SampleRect, mut emit: impl FnMut(Span)) {
         let w = self.bounds.and(w);
         for y in w.y0..w.y1 {
             let (mut x0, mut x1) = (i64::from(w.x0), i64::from(w.x1));

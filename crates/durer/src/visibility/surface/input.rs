@@ -21,11 +21,11 @@ pub struct SurfaceInput<'a> {
     /// Filter that chose the triangles.
     pub filter: Filter,
     /// Runs of items that share an instance and a material.
-    pub runs: Vec<Run>,
+    pub(crate) runs: Vec<Run>,
     /// All triangles that may cover a sample.
     pub triangles: Vec<ScreenTriangle>,
     /// Counts of the scene's triangles by their treatment.
-    pub counts: Counts,
+    pub(crate) counts: Counts,
     /// Budget for the triangles' memory, and cancellation.
     pub work: Work,
 }

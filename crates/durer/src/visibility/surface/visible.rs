@@ -9,12 +9,12 @@ use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
-use crate::visibility::surface::window::Window;
+use crate::visibility::surface::window::SampleRect;
 
 /// Nearest surface at each sample of a window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Visible {
-    window: Window,
+    window: SampleRect,
     /// Row by row; [`NO_ITEM`] at the background.
     pub item: Vec<u32>,
     /// Row by row; 1 at the background.
@@ -26,7 +26,7 @@ impl Visible {
     pub const PER_SAMPLE: u64 = size_of::<(u32, f32)>() as u64;
 
     /// Creates an empty window, as far as the far plane.
-    pub fn new(window: Window) -> Self {
+    pub fn new(window: SampleRect) -> Self {
         let size = |a: i32, b: i32| (b - a).max(0) as usize;
         let count = size(window.x0, window.x1) * size(window.y0, window.y1);
         Self { window, item: vec![NO_ITEM; count], depth: vec![1.0; count] }
@@ -40,7 +40,7 @@ impl Visible {
     }
 
     /// Returns the samples it holds.
-    pub fn window(&self) -> Window {
+    pub fn window(&self) -> SampleRect {
         self.window
     }
 
@@ -69,9 +69,9 @@ impl Visible {
 }
 
 /// Returns the pixels of a view's window.
-pub fn pixels_of(view: &crate::view::View) -> Window {
+pub fn pixels_of(view: &crate::view::View) -> SampleRect {
     let window = view.window();
-    Window { x0: window.x0(), y0: window.y0(), x1: window.x1(), y1: window.y1() }
+    SampleRect { x0: window.x0(), y0: window.y0(), x1: window.x1(), y1: window.y1() }
 }
 
 /// Returns whether the first is in front: the smaller depth, of equal ones the lower item.

@@ -15,7 +15,7 @@ pub enum Relation {
 
 /// A rectangle of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Window {
+pub struct SampleRect {
     /// First column.
     pub x0: i32,
     /// First row.
@@ -26,7 +26,7 @@ pub struct Window {
     pub y1: i32,
 }
 
-impl Window {
+impl SampleRect {
     /// Returns whether it contains no sample.
     pub(crate) fn is_empty(&self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1

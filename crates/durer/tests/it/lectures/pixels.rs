@@ -180,7 +180,7 @@ fn squares_that_share_edges_light_each_pixel_once() {
         let at = |x: i32, y: i32| p(f64::from(x) * 3.0 + 1.5, f64::from(y) * 3.0 + 1.5);
         let (c, r) = (column, row);
         let ring = [at(c, r), at(c + 1, r), at(c + 1, r + 1), at(c, r + 1)];
-        let emit = |span: durer::raster::span::Span| {
+        let emit = |span: durer::raster::Span| {
             (span.x0..span.x1).for_each(|x| lit[(span.y * 16 + x) as usize] += 1);
         };
         let options = polygon::Options::default();

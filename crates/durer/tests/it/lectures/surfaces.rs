@@ -14,7 +14,7 @@ use durer::trace::Recorder;
 use durer::visibility::polygons::warnock::{self, Rule, Step as Rules};
 use durer::visibility::polygons::{Face, Screen};
 use durer::visibility::surface::depth_sort::Test;
-use durer::visibility::surface::window::{Relation, Window};
+use durer::visibility::surface::{Relation, SampleRect};
 use std::collections::BTreeSet;
 
 fn frames(name: &str, example: &str) -> Vec<Frame> {
@@ -80,7 +80,7 @@ fn warnock_has_four_relations_and_four_rules() {
     };
     let quad = face(&[(-1.0, -1.0), (17.0, -1.0), (17.0, 17.0), (-1.0, 17.0)], 5.0);
     let alone = look(std::slice::from_ref(&quad), 16);
-    let whole = Window { x0: 0, y0: 0, x1: 16, y1: 16 };
+    let whole = SampleRect { x0: 0, y0: 0, x1: 16, y1: 16 };
     let surrounding = vec![(0, Relation::Surrounding)];
     assert_eq!(alone[0], Rules::Look { window: whole, relations: surrounding });
     assert_eq!(alone[1], Rules::Simple { window: whole, rule: Rule::Single, face: Some(0) });
@@ -91,14 +91,14 @@ fn warnock_has_four_relations_and_four_rules() {
     let both = vec![(0, Relation::Surrounding), (1, Relation::Inside)];
     assert_eq!(steps[0], Rules::Look { window: whole, relations: both });
     assert_eq!(steps[1], Rules::Divide { window: whole, x: 8, y: 8 });
-    let simple = |rule: Rule| -> Vec<(Window, Option<u32>)> {
+    let simple = |rule: Rule| -> Vec<(SampleRect, Option<u32>)> {
         let of_rule = |step: &Rules| match *step {
             Rules::Simple { window, rule: own, face } if own == rule => Some((window, face)),
             _ => None,
         };
         steps.iter().filter_map(of_rule).collect()
     };
-    let large = |w: &&(Window, Option<u32>)| w.0.x1 - w.0.x0 == 8 && w.1 == Some(0);
+    let large = |w: &&(SampleRect, Option<u32>)| w.0.x1 - w.0.x0 == 8 && w.1 == Some(0);
     assert_eq!(simple(Rule::Single).iter().filter(large).count(), 3);
     assert!(!simple(Rule::Surrounded).is_empty());
     assert!(simple(Rule::Surrounded).iter().chain(&simple(Rule::Pixel)).all(|w| w.1 == Some(1)));

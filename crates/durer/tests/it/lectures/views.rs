@@ -19,10 +19,10 @@ use durer::view::section::{self, cut_traced};
 use durer::view::warp::{self, HOLE, Source, warp};
 use durer::visibility::line::wireframe as wire_lines;
 use durer::visibility::surface::Cull;
-use durer::visibility::surface::input::SurfaceInput;
+use durer::visibility::surface::Filter;
+use durer::visibility::surface::SurfaceInput;
 use durer::visibility::surface::ray::{self, RayKind};
 use durer::visibility::surface::scan_line_z::{self, Step as Row};
-use durer::visibility::surface::setup::Filter;
 use durer::visibility::wireframe;
 
 /// Returns a camera in the origin of a perspective view along −z, by the tangent of half its vertical angle.

@@ -124,11 +124,6 @@ impl FaceNet {
         &self.corners
     }
 
-    /// Returns the corners on the page.
-    pub(crate) fn points(&self) -> &[DVec3] {
-        &self.points
-    }
-
     /// Returns the faces in their order.
     pub fn faces(&self) -> &[NetFace] {
         &self.faces

@@ -67,11 +67,6 @@ impl SceneOrientation {
         (0..items.len()).filter(|k| is_odd(*k) && (is_first(*k) || !is_odd(k - 1))).count() as u64
     }
 
-    /// Returns whether all faces are right as they are.
-    pub(crate) fn is_right(&self) -> bool {
-        !self.turned.contains(&true)
-    }
-
     /// Turns the faces that need it in the scene, which must be the one given to [`Self::of`]. Vertex normals that look
     /// away from the new front are reversed. Instances of one mesh that must be turned differently get separate meshes.
     pub fn apply(&self, scene: &mut Scene) {

@@ -153,11 +153,6 @@ impl Tree {
         self.pieces.corners(piece)
     }
 
-    /// Returns the number of nodes.
-    pub(crate) fn node_count(&self) -> usize {
-        self.nodes.len()
-    }
-
     /// Returns whether a point of a piece's face belongs to the piece.
     pub fn holds(&self, piece: u32, point: DVec3) -> bool {
         self.pieces.holds(piece, point)

@@ -7,7 +7,7 @@ use crate::raster::span::Span;
 use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::nearer;
-use crate::visibility::surface::window::Window;
+use crate::visibility::surface::window::SampleRect;
 
 /// A line that cuts a polygon in two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -59,7 +59,7 @@ pub struct Key {
 pub struct Piece {
     pub triangle: u32,
     /// The pixels of its box.
-    pub window: Window,
+    pub window: SampleRect,
     pub nearest: f32,
     pub farthest: f32,
     pub part: Option<Part>,
@@ -83,7 +83,7 @@ impl<'a> Pieces<'a> {
     /// Bytes for each triangle, with its places in the order.
     pub const PER_TRIANGLE: u64 = (size_of::<Cover>() + size_of::<f64>()) as u64 + PER_PIECE;
 
-    pub fn new(triangles: &'a [ScreenTriangle], screen: Window) -> Self {
+    pub fn new(triangles: &'a [ScreenTriangle], screen: SampleRect) -> Self {
         let covers: Vec<Cover> =
             triangles.iter().map(|t| Cover::new(t, SampleGrid::PIXELS)).collect();
         let whole = |(i, t): (usize, &ScreenTriangle)| Piece {
@@ -111,7 +111,7 @@ impl<'a> Pieces<'a> {
         &self.list[polygon as usize]
     }
 
-    pub fn window(&self, polygon: u32) -> &Window {
+    pub fn window(&self, polygon: u32) -> &SampleRect {
         &self.get(polygon).window
     }
 
@@ -140,7 +140,7 @@ impl<'a> Pieces<'a> {
     }
 
     /// Returns the pixels of a polygon within a window, row by row.
-    pub fn spans(&self, polygon: u32, w: &Window) -> Vec<Span> {
+    pub fn spans(&self, polygon: u32, w: &SampleRect) -> Vec<Span> {
         let mut spans = Vec::new();
         let piece = self.get(polygon);
         match &piece.part {
@@ -278,11 +278,11 @@ fn slack(t: &ScreenTriangle) -> f64 {
     beyond + 2.0 * f64::from(f32::EPSILON) * largest
 }
 
-fn box_of(spans: &[Span]) -> Option<Window> {
+fn box_of(spans: &[Span]) -> Option<SampleRect> {
     let (first, last) = (spans.first()?, spans.last()?);
     let x0 = spans.iter().map(|s| s.x0).min()?;
     let x1 = spans.iter().map(|s| s.x1).max()?;
-    Some(Window { x0, y0: first.y, x1, y1: last.y + 1 })
+    Some(SampleRect { x0, y0: first.y, x1, y1: last.y + 1 })
 }
 
 /// Returns the part of a convex outline where `sign · values` is positive.

@@ -2,7 +2,7 @@
 
 use super::piece::{Key, Pieces};
 use crate::view::View;
-use crate::visibility::surface::window::Window;
+use crate::visibility::surface::window::SampleRect;
 
 /// Pixels along the side of a tile. Smaller ones cost memory for large polygons, larger ones more
 /// tests among small polygons.
@@ -34,14 +34,14 @@ impl Tiles {
     /// that have grown have room for up to twice as many.
     pub fn bytes(pieces: &Pieces<'_>, view: &View) -> u64 {
         let across = |from: i32, to: i32| ((to + TILE - 1) / TILE - from / TILE).max(0) as u64;
-        let tiles = |w: &Window| across(w.x0, w.x1) * across(w.y0, w.y1);
+        let tiles = |w: &SampleRect| across(w.x0, w.x1) * across(w.y0, w.y1);
         let keys: u64 = (0..pieces.len()).map(|polygon| tiles(pieces.window(polygon))).sum();
         let lists = across(0, view.width() as i32) * across(0, view.height() as i32);
         keys * 2 * size_of::<Key>() as u64 + lists * size_of::<Vec<Key>>() as u64
     }
 
     /// Returns the tiles that a window of pixels of the screen has a part in.
-    pub fn of(&self, w: &Window) -> impl Iterator<Item = usize> + use<> {
+    pub fn of(&self, w: &SampleRect) -> impl Iterator<Item = usize> + use<> {
         let columns = self.columns;
         let end = |v: i32| (v + TILE - 1) / TILE;
         let (x0, x1, y0, y1) = (w.x0 / TILE, end(w.x1), w.y0 / TILE, end(w.y1));

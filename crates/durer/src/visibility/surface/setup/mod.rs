@@ -18,7 +18,7 @@ mod vertex;
 
 pub(crate) use corner::EIGHT;
 pub(crate) use runs::runs;
-pub use runs::{Coverage, Run};
+pub(crate) use runs::{Coverage, Run};
 pub(crate) use sampled::{PIXELS, Sampled, place_in_box};
 pub use triangle::ScreenTriangle;
 pub(crate) use vertex::ScreenVertex;

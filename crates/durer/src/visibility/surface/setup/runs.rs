@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// Source of a surface's fragments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Coverage {
+pub(crate) enum Coverage {
     /// Every fragment hides those behind it.
     Opaque,
     /// A fragment is there or not, by its alpha.
@@ -16,7 +16,7 @@ pub enum Coverage {
 
 /// A run of primitives of one instance that share a material; in scene order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub(crate) struct Run {
     /// Index into [`Scene::instances`].
     pub instance: usize,
     /// Index into [`Scene::meshes`].

@@ -2,15 +2,15 @@
 
 use crate::visibility::surface::cover::SampleGrid;
 use crate::visibility::surface::setup::ScreenTriangle;
-use crate::visibility::surface::window::Window;
+use crate::visibility::surface::window::SampleRect;
 
 /// Returns the largest depth over a window's samples; exact, because rounding is monotonic: depths increase or decrease
 /// along rows and columns and are extreme at corners.
-pub fn farthest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
+pub fn farthest(t: &ScreenTriangle, grid: SampleGrid, window: &SampleRect) -> f32 {
     window.corners().into_iter().fold(0.0, |far: f32, [x, y]| far.max(grid.depth(t, x, y)))
 }
 
-fn nearest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
+fn nearest(t: &ScreenTriangle, grid: SampleGrid, window: &SampleRect) -> f32 {
     let corners = window.corners().into_iter();
     corners.fold(f32::INFINITY, |near, [x, y]| near.min(grid.depth(t, x, y)))
 }
@@ -30,7 +30,7 @@ pub fn hides(
     front: &ScreenTriangle,
     behind: &ScreenTriangle,
     grid: SampleGrid,
-    window: &Window,
+    window: &SampleRect,
 ) -> bool {
     let (far, near) = (farthest(front, grid, window), nearest(behind, grid, window));
     if far < near || (far == near && front.item < behind.item) {

@@ -11,7 +11,7 @@ use crate::visibility::surface::layers::{Layer, compose, mean, sort_layers};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture::Picture;
 use crate::visibility::surface::visible::{Visible, background_at, nearer, pixels_of};
-use crate::visibility::surface::window::Window;
+use crate::visibility::surface::window::SampleRect;
 
 /// The blended surfaces of a window.
 pub struct Glass {
@@ -75,7 +75,7 @@ pub fn render(
         let grid = SampleGrid::below_pixel(options.sub_levels);
         let mut samples = Bands::new(input, lighting, grid, pixels.solver.glass);
         let mut lit = Lit::new(lighting);
-        let Window { x0: left, y0: top, .. } = pixels_of(input.view);
+        let SampleRect { x0: left, y0: top, .. } = pixels_of(input.view);
         samples.solve(options, t, |visible, glass| {
             let [x0, x1, y0, y1] = in_pixels(visible, grid);
             for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
@@ -90,7 +90,7 @@ pub fn render(
 
 /// Returns the first column and the one after the last, and the rows likewise, of a window of samples.
 fn in_pixels(visible: &Visible, grid: SampleGrid) -> [i32; 4] {
-    let Window { x0, x1, y0, y1 } = visible.window();
+    let SampleRect { x0, x1, y0, y1 } = visible.window();
     [x0, x1, y0, y1].map(|v| v / grid.per_pixel())
 }
 
@@ -98,7 +98,7 @@ fn in_pixels(visible: &Visible, grid: SampleGrid) -> [i32; 4] {
 struct Bands<'a> {
     solver: Solver<'a>,
     grid: SampleGrid,
-    pixels: Window,
+    pixels: SampleRect,
 }
 
 impl<'a> Bands<'a> {
@@ -108,7 +108,7 @@ impl<'a> Bands<'a> {
         grid: SampleGrid,
         glass: Option<Glass>,
     ) -> Self {
-        let nothing = Window { x0: 0, y0: 0, x1: 0, y1: 0 };
+        let nothing = SampleRect { x0: 0, y0: 0, x1: 0, y1: 0 };
         let solver = Solver::new(input, lighting, grid, nothing, glass);
         Self { solver, grid, pixels: pixels_of(input.view) }
     }
@@ -120,10 +120,10 @@ impl<'a> Bands<'a> {
         t: &mut impl Tracer<Step>,
         mut solved: impl FnMut(&Visible, &Glass),
     ) {
-        let (n, Window { x0, y0, x1, y1 }) = (self.grid.per_pixel(), self.pixels);
+        let (n, SampleRect { x0, y0, x1, y1 }) = (self.grid.per_pixel(), self.pixels);
         for top in (y0..y1).step_by(BAND as usize) {
             let bottom = y1.min(top + BAND);
-            let window = Window { x0: x0 * n, y0: top * n, x1: x1 * n, y1: bottom * n };
+            let window = SampleRect { x0: x0 * n, y0: top * n, x1: x1 * n, y1: bottom * n };
             self.solver.restart(window);
             self.solver.run(window, options.division, t);
             if let Some(glass) = &mut self.solver.glass {

@@ -30,7 +30,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
 };
-use crate::visibility::surface::window::{Relation, Window};
+use crate::visibility::surface::window::{Relation, SampleRect};
 use crate::work::{Charge, Work};
 use depth::{farthest, hides};
 use glass::Glass;
@@ -90,33 +90,33 @@ pub enum Step {
     /// A pass over a part of the screen begins: pixels, or samples below them.
     Begin {
         /// The part.
-        window: Window,
+        window: SampleRect,
         /// Samples along the side of a pixel.
         per_pixel: i32,
     },
     /// A window is examined.
     Look {
         /// The window.
-        window: Window,
+        window: SampleRect,
         /// Number of triangles that concern it.
         triangles: usize,
     },
     /// Rule 1: all triangles are outside.
     Empty {
         /// The window.
-        window: Window,
+        window: SampleRect,
     },
     /// Rule 2: only one triangle concerns the window.
     Single {
         /// The window.
-        window: Window,
+        window: SampleRect,
         /// Index into [`SurfaceInput::triangles`].
         triangle: u32,
     },
     /// Rules 3 and 4: a triangle surrounds the window and hides all others that concern it.
     Surrounded {
         /// The window.
-        window: Window,
+        window: SampleRect,
         /// Index into [`SurfaceInput::triangles`].
         triangle: u32,
     },
@@ -132,7 +132,7 @@ pub enum Step {
     /// The window is divided before a column and a row.
     Divide {
         /// The window.
-        window: Window,
+        window: SampleRect,
         /// First column of the right half.
         x: i32,
         /// First row of the lower half.
@@ -192,12 +192,12 @@ fn anti_aliased(
     t: &mut impl Tracer<Step>,
 ) {
     let grid = SampleGrid::below_pixel(options.sub_levels);
-    let (n, Window { x0, y0, x1, y1 }) = (grid.per_pixel(), pixels_of(input.view));
+    let (n, SampleRect { x0, y0, x1, y1 }) = (grid.per_pixel(), pixels_of(input.view));
     let mut lit = Lit::new(lighting);
     for top in (y0..y1).step_by(BAND as usize).take_while(|_| !input.work.is_stopped()) {
         let bottom = y1.min(top + BAND);
         input.work.advance((bottom - top) as u64);
-        let window = Window { x0: x0 * n, y0: top * n, x1: x1 * n, y1: bottom * n };
+        let window = SampleRect { x0: x0 * n, y0: top * n, x1: x1 * n, y1: bottom * n };
         let visible = solve(input, lighting, options.division, grid, window, t);
         for (x, y) in (top..bottom).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
             let behind = background_at(&options.look, input.view.height(), y);
@@ -229,7 +229,7 @@ pub(crate) fn solve(
     lighting: Lighting<'_>,
     division: Division,
     grid: SampleGrid,
-    window: Window,
+    window: SampleRect,
     t: &mut impl Tracer<Step>,
 ) -> Visible {
     let mut solver = Solver::new(input, lighting, grid, window, None);
@@ -246,7 +246,7 @@ struct Entry {
 
 /// A window that waits, and its part of the list of entries.
 struct Waiting {
-    window: Window,
+    window: SampleRect,
     first: usize,
     end: usize,
 }
@@ -270,7 +270,7 @@ impl<'a> Solver<'a> {
         input: &'a SurfaceInput<'_>,
         lighting: Lighting<'a>,
         grid: SampleGrid,
-        window: Window,
+        window: SampleRect,
         glass: Option<Glass>,
     ) -> Self {
         let triangles = &input.triangles;
@@ -281,7 +281,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Begins with an empty window.
-    fn restart(&mut self, window: Window) {
+    fn restart(&mut self, window: SampleRect) {
         self.visible = Visible::new(window);
         if let Some(glass) = &mut self.glass {
             glass.layers.clear();
@@ -293,7 +293,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Examines windows from a stack; the windows of a stack share one list of entries.
-    fn run(&mut self, whole: Window, division: Division, t: &mut impl Tracer<Step>) {
+    fn run(&mut self, whole: SampleRect, division: Division, t: &mut impl Tracer<Step>) {
         t.step(|| Step::Begin { window: whole, per_pixel: self.grid.per_pixel() });
         let mut list = Vec::new();
         if !whole.is_empty() {
@@ -329,7 +329,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Adds those entries to a list that concern a window.
-    fn concern(&self, entries: &[Entry], window: &Window, list: &mut Vec<Entry>) {
+    fn concern(&self, entries: &[Entry], window: &SampleRect, list: &mut Vec<Entry>) {
         for &Entry { triangle, surrounds } in entries {
             let relation = match surrounds {
                 true => Relation::Surrounding,
@@ -343,7 +343,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Drops triangles behind a surrounding one: the one whose farthest corner is nearest.
-    fn drop_hidden(&self, window: &Window, entries: &mut Vec<Entry>) {
+    fn drop_hidden(&self, window: &SampleRect, entries: &mut Vec<Entry>) {
         let surrounding = entries.iter().filter(|e| e.surrounds);
         let mut best: Option<(f32, u32, u32)> = None;
         let hiding = |i: usize| !self.masks.is_masked(i) && !self.is_blended(i);
@@ -366,7 +366,7 @@ impl<'a> Solver<'a> {
     /// surfaces; returns whether it was such a window.
     fn draw_simple(
         &mut self,
-        window: &Window,
+        window: &SampleRect,
         entries: &[Entry],
         t: &mut impl Tracer<Step>,
     ) -> bool {
@@ -394,7 +394,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Scan-converts one triangle in a window.
-    fn draw(&mut self, window: &Window, triangle: usize) {
+    fn draw(&mut self, window: &SampleRect, triangle: usize) {
         let blended = self.is_blended(triangle);
         let Self { triangles, covers, grid, masks, visible, glass, .. } = self;
         let (t, n) = (&triangles[triangle], grid.per_pixel());
@@ -451,7 +451,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Returns the column and row before which a window is divided.
-    fn division(&self, w: &Window, entries: &[Entry], division: Division) -> (i32, i32) {
+    fn division(&self, w: &SampleRect, entries: &[Entry], division: Division) -> (i32, i32) {
         let middle = ((w.x0 + w.x1) / 2, (w.y0 + w.y1) / 2);
         if division == Division::Regular {
             return middle;
@@ -473,10 +473,10 @@ impl<'a> Solver<'a> {
 const VERTEX_CANDIDATES: usize = 16;
 
 /// Returns the parts of a window that are not empty.
-fn parts(w: &Window, x: i32, y: i32) -> impl Iterator<Item = Window> {
-    let Window { x0, y0, x1, y1 } = *w;
+fn parts(w: &SampleRect, x: i32, y: i32) -> impl Iterator<Item = SampleRect> {
+    let SampleRect { x0, y0, x1, y1 } = *w;
     let columns = [(x, x1), (x0, x)];
     let rows = [(y, y1), (y0, y)];
-    let parts = rows.map(|(y0, y1)| columns.map(|(x0, x1)| Window { x0, y0, x1, y1 }));
+    let parts = rows.map(|(y0, y1)| columns.map(|(x0, x1)| SampleRect { x0, y0, x1, y1 }));
     parts.into_iter().flatten().filter(|part| !part.is_empty())
 }
