@@ -5,7 +5,8 @@
 use super::surfaces::{Bytes, camera, scene};
 use durer::annotate::{self, Along, Annotations, Place, Request, Shown, Side, Thread, What};
 use durer::clip::polygon::{Shapes, WindingRule};
-use durer::clip::simplify::{Coverage, LineSimplifier, coverage};
+use durer::clip::simplify::LineSimplifier;
+use durer::clip::simplify::coverage::{self, Coverage};
 use durer::clip::tiles::{Body, Feature, Options as TileOptions, Pyramid};
 use durer::curve::b_spline::Nurbs;
 use durer::curve::fit::{Options as FitOptions, Polyline, fit};

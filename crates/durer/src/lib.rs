@@ -70,10 +70,10 @@
 //! | [Weiler–Atherton](clip::polygon::weiler_atherton) | polygons with holes | valid polygons |
 //! | [Greiner–Hormann](clip::polygon::greiner_hormann) | polygons with holes; rings that cross | valid polygons; rings that cross |
 //! | [Vatti](clip::polygon::vatti) | anything | valid polygons, swept |
-//! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust choice |
+//! | [Overlay](clip::polygon::overlay) | anything | valid polygons: the robust choice |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
 //!
-//! [Overlay](mod@clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers;
+//! [Overlay](clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers;
 //! the [tree](clip::polygon::NestingTree) of a result gives the nesting of its rings. [`clip::attribute`] carries
 //! heights, colours and other values to new vertices.
 //!

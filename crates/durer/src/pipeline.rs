@@ -18,7 +18,8 @@ pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes, with_marks};
 pub use edges::{EdgeStyle, draw_edges};
 pub use floor::{add_axes, add_grid, add_ground};
 pub use pieces::{check_pieces, render_seen, status_of_pieces, survey};
-pub use status::{Places, Status, Unseen, drawing_status, status};
+use status::Places;
+pub use status::{Status, Unseen, drawing_status, status};
 pub use tone_marks::{ToneMarks, tone_marks};
 
 use crate::explain::{Operations, Tally};

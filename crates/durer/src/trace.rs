@@ -25,6 +25,27 @@ pub trait Tracer<S> {
     fn step(&mut self, make: impl FnOnce() -> S);
 }
 
+/// A step that belongs to a line of its algorithm's pseudocode.
+///
+/// ```
+/// use durer::clip::line::{Segment, cohen_sutherland};
+/// use durer::math::{DVec2, Rect};
+/// use durer::trace::{PseudocodeLine, Recorder};
+///
+/// let window = Rect::new(DVec2::ZERO, DVec2::ONE)?;
+/// let segment = Segment::new(DVec2::new(-1.0, 0.5), DVec2::new(0.5, 0.5));
+/// let mut recorder = Recorder::default();
+/// cohen_sutherland::clip(&window, segment, &mut recorder)?;
+/// let text = cohen_sutherland::INFO.pseudocode;
+/// let run: Vec<&str> = recorder.steps().iter().map(|step| text[step.line() - 1]).collect();
+/// assert_eq!(run.len(), recorder.steps().len());
+/// # Ok::<(), durer::Error>(())
+/// ```
+pub trait PseudocodeLine {
+    /// Returns the line of [`Info::pseudocode`](crate::info::Info::pseudocode) that the step runs, counted from 1.
+    fn line(&self) -> usize;
+}
+
 /// Records nothing and costs nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoTrace;

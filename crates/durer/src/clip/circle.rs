@@ -11,7 +11,7 @@
 use super::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -45,10 +45,6 @@ const SHORT: f64 = 4e-15;
 
 /// Largest radius: its square is finite.
 pub const MAX_RADIUS: f64 = 1e150;
-
-/// There is nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// A circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,9 +94,8 @@ pub enum Step {
     Arc(Arc),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Box { beyond, .. } if !beyond.is_inside() => 2,
             Self::Box { crossed, .. } if crossed.is_inside() => 3,

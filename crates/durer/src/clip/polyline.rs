@@ -20,7 +20,7 @@ use crate::clip::polygon::rectangle::{ClippedLines, Near, Prepared};
 use crate::clip::touch::{are_one, is_on, reach};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
@@ -85,9 +85,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Part { .. } => 7,
         }

@@ -13,7 +13,7 @@
 use super::outcode::{DepthRange, Outcode};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Plane};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -193,10 +193,10 @@ pub enum Step<A = ()> {
     Dropped,
 }
 
-impl<A> Step<A> {
+impl<A> PseudocodeLine for Step<A> {
     /// Returns the line of the pseudocode that runs, counted from 1: of [`INFO`], of [`ATTRIBUTES`], and of all places
     /// of [`super::place`].
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Code { .. } => 1,
             Self::Rejected => 2,

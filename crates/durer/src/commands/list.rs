@@ -6,7 +6,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::DMat4;
 use crate::raster::point::MAX_SIZE;
 use crate::target::Framebuffer;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// The facts of display lists.
@@ -140,9 +140,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Recorded { .. } => 1,
             Self::Returned { .. } => 4,

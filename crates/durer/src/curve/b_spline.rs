@@ -7,7 +7,7 @@
 use super::bezier::{Point, project};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// The facts of de Boor's algorithm.
@@ -161,9 +161,8 @@ pub struct Step<P> {
     pub point: P,
 }
 
-impl<P> Step<P> {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for Step<P> {
+    fn line(&self) -> usize {
         7
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, DVec4};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// The facts of de Casteljau's algorithm.
 pub const INFO: Info = Info {
@@ -65,9 +65,8 @@ pub struct Step<P> {
     pub point: P,
 }
 
-impl<P> Step<P> {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for Step<P> {
+    fn line(&self) -> usize {
         5
     }
 }

@@ -11,7 +11,7 @@
 use super::path::Path;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -72,9 +72,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Tangent { .. } => 3,
             Self::Piece { .. } => 8,

@@ -7,7 +7,7 @@
 
 use super::bezier::{Point, de_casteljau};
 use crate::info::{Class, Info, Occluder};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -54,9 +54,8 @@ pub enum Step<P> {
     },
 }
 
-impl<P> Step<P> {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for Step<P> {
+    fn line(&self) -> usize {
         match self {
             Self::Row { .. } => 4,
             Self::Point { .. } => 5,

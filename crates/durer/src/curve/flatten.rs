@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::path::{Path, PathElement};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DAffine2, DVec2};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// The facts of flattening.
 pub const INFO: Info = Info {
@@ -164,9 +164,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Start(_) => 2,
             Self::Chord { .. } => 8,

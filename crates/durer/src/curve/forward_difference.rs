@@ -10,7 +10,7 @@
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -48,9 +48,8 @@ pub struct Step {
     pub differences: [DVec2; 3],
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         if self.index == 0 { 6 } else { 9 }
     }
 }

@@ -22,7 +22,7 @@
 use super::b_spline::BSpline;
 use super::bezier::Point;
 use crate::info::{Class, Info, Occluder};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// The facts of Boehm's algorithm.
@@ -86,9 +86,8 @@ pub struct Step<P> {
     pub point: P,
 }
 
-impl<P> Step<P> {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for Step<P> {
+    fn line(&self) -> usize {
         6
     }
 }
@@ -109,9 +108,8 @@ pub struct OsloStep<P> {
     pub point: P,
 }
 
-impl<P> OsloStep<P> {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for OsloStep<P> {
+    fn line(&self) -> usize {
         8
     }
 }

@@ -8,6 +8,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::fragment::fog::{Fog, INFO, Step};
 use crate::math::{DVec2, Vec4};
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

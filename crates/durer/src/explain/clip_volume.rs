@@ -13,7 +13,7 @@ use crate::clip::outcode::{DepthRange, Outcode};
 use crate::clip::place::{self, ClipPlace};
 use crate::clip::volume::{self, ClipVertex, Step};
 use crate::math::{DMat4, DVec3, DVec4};
-use crate::trace::Recorder;
+use crate::trace::{PseudocodeLine, Recorder};
 use crate::{Error, Result};
 
 pub(super) const LESSONS: &[Lesson] = &[

@@ -11,6 +11,7 @@ use crate::clip::crossings::bentley_ottmann::{INFO, Place, Step, crossings};
 use crate::clip::crossings::{Crossing, Options};
 use crate::clip::line::Segment;
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

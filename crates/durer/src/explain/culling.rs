@@ -10,6 +10,7 @@ use super::words::{Caption, Template, Value, Word};
 use crate::clip::line::ConvexPolygon;
 use crate::math::{DVec2, Plane, Rect};
 use crate::scene::Aabb;
+use crate::trace::PseudocodeLine;
 use crate::view::cull::{Containment, ConvexVolume, INFO, Step};
 use crate::{Error, Result};
 

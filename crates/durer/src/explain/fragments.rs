@@ -16,6 +16,7 @@ use crate::fragment::{
 use crate::math::{DVec2, DVec3};
 use crate::shade::color::decode_rgba8;
 use crate::target::Framebuffer;
+use crate::trace::PseudocodeLine;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

@@ -8,6 +8,7 @@ use super::picture::{Look, Picture};
 use super::words::{Template, Value, Word};
 use crate::Result;
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use crate::view::interior_point::{INFO, Options, Step, interior_point};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -9,6 +9,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::Result;
 use crate::math::{DVec2, Rect};
+use crate::trace::PseudocodeLine;
 use crate::view::label::{INFO, Obstacle, Placer, Step};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -13,7 +13,7 @@ use crate::commands::{
 };
 use crate::math::{DMat4, DVec2, DVec3, Rect, Vec4};
 use crate::target::Framebuffer;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

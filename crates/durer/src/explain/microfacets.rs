@@ -8,7 +8,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, Vec3};
 use crate::shade::metallic_roughness::{INFO, Lit, Step, reflect_one};
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, PseudocodeLine};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -13,7 +13,7 @@ use super::words::{Caption, Template, Value, Word};
 use crate::clip::volume::{self, ATTRIBUTES, ClipVertex, Step};
 use crate::math::{DVec2, DVec3, DVec4, Rect};
 use crate::raster::interpolate::perspective_correct;
-use crate::trace::{Recorder, Tracer};
+use crate::trace::{PseudocodeLine, Recorder, Tracer};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

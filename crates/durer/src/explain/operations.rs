@@ -109,7 +109,7 @@ const fn kinds(method: SurfaceMethod) -> &'static [Kind] {
 /// assert_eq!(compared.map(|of| of.count), Some(5));
 /// ```
 #[derive(Debug, Clone, Default)]
-pub struct Tally {
+pub(crate) struct Tally {
     counts: [u64; KINDS.len()],
     /// Fragments of each column of the current row.
     lists: Vec<u64>,
@@ -117,7 +117,7 @@ pub struct Tally {
 
 impl Tally {
     /// Returns the counts of a method, its main one first.
-    pub fn operations(&self, method: SurfaceMethod) -> Vec<Operations> {
+    pub(crate) fn operations(&self, method: SurfaceMethod) -> Vec<Operations> {
         let of = |&kind: &Kind| {
             let (name, title) = KINDS[kind as usize];
             Operations { name, title, count: self.counts[kind as usize] }

@@ -12,6 +12,7 @@ use crate::Result;
 use crate::math::DVec2;
 use crate::scene::{Instance, Mesh};
 use crate::sorting::CompactSort;
+use crate::trace::PseudocodeLine;
 use crate::view::pick::{Area, Hit, INFO, Step, pick_traced};
 
 pub(super) const LESSON: Lesson = Lesson {

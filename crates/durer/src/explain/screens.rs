@@ -9,6 +9,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Word};
 use crate::clip::line::{LineClipper, Segment};
 use crate::math::{DVec2, Rect};
+use crate::trace::PseudocodeLine;
 use crate::view::layout::{INFO, Layout, Step};
 use crate::view::window::{Aspect, PixelRect, Viewport, Window, WindowToViewport, YAxis};
 use crate::{Error, Result};

@@ -8,6 +8,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3, Plane};
 use crate::scene::{Instance, Mesh, Scene};
+use crate::trace::PseudocodeLine;
 use crate::view::section::{INFO, Step, cut_traced};
 use crate::{Error, Result};
 

@@ -12,6 +12,7 @@ use crate::raster::interpolate;
 use crate::raster::interpolate::rows::{Corner, Step};
 use crate::raster::triangle::Options;
 use crate::shade::{flat, gouraud, phong, unlit};
+use crate::trace::PseudocodeLine;
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 

@@ -15,7 +15,7 @@ use crate::shade::PreparedLights;
 use crate::shade::shadow::{INFO, ShadowMap, Step};
 use crate::sorting::CompactSort;
 use crate::target::{Framebuffer, Pixels};
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, PseudocodeLine};
 use crate::view::View;
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;

@@ -6,8 +6,10 @@ use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
 use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
-use crate::clip::simplify::{Coverage, LineSimplifier, coverage, douglas_peucker, visvalingam};
+use crate::clip::simplify::coverage::{self, Coverage};
+use crate::clip::simplify::{LineSimplifier, douglas_peucker, visvalingam};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSONS: &[Lesson] = &[DOUGLAS_PEUCKER, VISVALINGAM, COVERAGE];

@@ -10,6 +10,7 @@ use super::words::{Template, Value, Word};
 use crate::Result;
 use crate::fragment::halftone::{clustered_dot, error_diffusion};
 use crate::target::Pixels;
+use crate::trace::PseudocodeLine;
 
 pub(super) const LESSONS: &[Lesson] = &[FLOYD_STEINBERG, CLUSTERED_DOT];
 

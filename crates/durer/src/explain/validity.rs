@@ -11,6 +11,7 @@ use crate::Result;
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::validity::{Fault, Flaw, INFO, Relation, Step, flaws_traced};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

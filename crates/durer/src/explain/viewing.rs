@@ -8,6 +8,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::Result;
 use crate::math::{DAffine2, DVec2, Rect};
+use crate::trace::PseudocodeLine;
 use crate::view::mapping::{self, INFO, Step, map};
 use crate::view::window::{PixelRect, Viewport, Window, YAxis};
 

@@ -12,7 +12,7 @@ use crate::math::{DVec2, DVec3};
 use crate::scene::Camera;
 use crate::shade::PreparedLights;
 use crate::target::{Framebuffer, Pixels};
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, PseudocodeLine};
 use crate::view::View;
 use crate::view::warp::{INFO, Options, Source, Step, warp};
 use crate::visibility::surface::Cull;

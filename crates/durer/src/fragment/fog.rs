@@ -6,7 +6,7 @@
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{Vec4, exp2};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -73,9 +73,8 @@ pub enum Step {
     Mixed(Vec4),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Share { fog: Fog::Linear { .. }, .. } => 3,
             Self::Share { fog: Fog::Exponential { .. }, .. } => 5,

@@ -4,6 +4,7 @@ use super::Fragment;
 use crate::info::{Class, Info, Occluder};
 use crate::math::Vec4;
 use crate::target::Framebuffer;
+use crate::trace::PseudocodeLine;
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -92,9 +93,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Scissor { .. } => 2,
             Self::Alpha { .. } => 3,

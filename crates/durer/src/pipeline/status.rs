@@ -146,7 +146,7 @@ fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
 }
 
 /// Positions of all vertices used by primitives, of a scene that may come in pieces.
-pub struct Places<'a> {
+pub(crate) struct Places<'a> {
     view: &'a View,
     any: bool,
     beyond_all: Option<Outcode>,

@@ -14,7 +14,7 @@
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// The facts of circles.
@@ -102,9 +102,9 @@ pub struct Step {
     pub d: i128,
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode that follows from the decision variable.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match (self.region, self.d < 0) {
             (Region::Octant | Region::Flat, true) => 6,
             (Region::Octant | Region::Flat, false) => 8,

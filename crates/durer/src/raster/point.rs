@@ -11,7 +11,7 @@
 use super::line::projected;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, IVec2};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::view::window::PixelRect;
 
 /// The facts of points as squares.
@@ -106,9 +106,9 @@ pub enum Step {
     },
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode of [`INFO`] or [`DISC`] that runs, counted from 1.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Outside => 2,
             Self::Disc { .. } => 3,

@@ -8,11 +8,14 @@
 use earcut::Earcut;
 
 use crate::Result;
-use crate::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
+use crate::clip::polygon::{
+    BooleanOp, Shapes, WindingRule,
+    overlay::{self, overlay},
+};
 use crate::curve::Contours;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// The facts of triangulation.
 pub const INFO: Info = Info {
@@ -83,9 +86,8 @@ pub enum Step {
     Triangle([u32; 3]),
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Point(_) => 1,
             Self::Bridge(_) => 3,

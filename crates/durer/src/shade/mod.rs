@@ -1,7 +1,7 @@
 //! Light on surfaces.
 //!
 //! [`PreparedMaterials`] and [`PreparedLights`] are made once per picture, [`shade`] is called per
-//! visible sample, [`shade_vertex`] and [`shade_face`] for the interpolated and the flat model. Renderers shade eight
+//! visible sample, [`gouraud::shade_vertex`] and [`flat::shade_face`] for the interpolated and the flat model. Renderers shade eight
 //! and sixteen samples of one material at a time by the same formulas.
 //!
 //! Space: world axes, but with the origin moved to the eye ([`PreparedLights::origin`]), so that
@@ -41,8 +41,8 @@ mod usage;
 
 pub use environment::Surroundings;
 pub use exposure::Exposure;
-pub use flat::shade_face;
-pub use gouraud::{Reflected, shade_vertex};
+pub(crate) use flat::shade_face;
+pub(crate) use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub(crate) use lookup::TexCoords;
 pub use material::{PreparedMaterial, PreparedMaterials, shade, shade_seen};
@@ -51,7 +51,7 @@ pub use panorama::Panorama;
 pub(crate) use plain::{shade_frame, shade_points};
 pub(crate) use points::{Faces, Points};
 pub use surface::{Surface, TexCoord};
-pub use texture::PreparedTexture;
+pub(crate) use texture::PreparedTexture;
 pub(crate) use textured::{TexturedPoint, TexturedPoints};
 pub use tone_map::ToneMap;
 

@@ -13,7 +13,7 @@ use super::lane::{Lane, Vec3Lane};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, Mat4, Vec3};
 use crate::target::Pixels;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::sync::Arc;
 
@@ -75,9 +75,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Moved { inside: true, .. } => 4,
             Self::Moved { inside: false, .. } => 5,

@@ -7,6 +7,7 @@
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{Vec2, Vec4};
 use crate::scene::MipFilter;
+use crate::trace::PseudocodeLine;
 
 /// The facts of sampling one image: wrap modes, the nearest texel, bilinear filtering.
 pub const INFO: Info = Info {
@@ -110,9 +111,8 @@ pub enum Step {
     Divided(Vec4),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Detail { lod, .. } if *lod <= 0.0 => 3,
             Self::Detail { mip: MipFilter::None, .. } => 4,

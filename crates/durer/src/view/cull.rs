@@ -9,7 +9,7 @@ use crate::clip::volume::planes_in_source;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
 use crate::scene::{Aabb, BoundingSphere};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -77,9 +77,8 @@ pub enum Step {
     Found(Containment),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Plane { relation: Containment::Inside, .. } => 5,
             Self::Plane { relation: Containment::Outside, .. } => 6,

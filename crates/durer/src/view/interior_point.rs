@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Options for the extent of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,9 +40,8 @@ pub struct Step {
     pub distance: f64,
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         if self.half > 0.0 { 2 } else { 7 }
     }
 }

@@ -7,7 +7,7 @@
 
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -63,9 +63,8 @@ pub enum Step {
     LeftOut,
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Candidate { obstacle: Some(Obstacle::Bounds), .. } => 4,
             Self::Candidate { obstacle: None, .. } => 5,

@@ -5,7 +5,7 @@
 
 use super::window::{PixelRect, Viewport};
 use crate::info::{Class, Info, Occluder};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::str::FromStr;
 
@@ -54,9 +54,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Row { .. } => 2,
             Self::Cell { .. } => 6,

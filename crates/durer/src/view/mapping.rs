@@ -8,7 +8,7 @@
 use super::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -69,9 +69,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Columns { .. } => 3,
             Self::Rows { .. } => 5,

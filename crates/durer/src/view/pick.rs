@@ -12,7 +12,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
 use crate::scene::{Aabb, Mesh, Scene, Topology};
 use crate::sorting::CompactSort;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::view::View;
 use crate::view::cull::{Containment, ConvexVolume};
 
@@ -105,9 +105,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Object { inside: false, .. } => 3,
             Self::Object { inside: true, .. } => 4,

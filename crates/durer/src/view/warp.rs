@@ -18,7 +18,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4};
 use crate::scene::Camera;
 use crate::target::{Framebuffer, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::view::View;
 use crate::work::Work;
 use crate::{Error, Result};
@@ -106,9 +106,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Move { .. } => 3,
             Self::Write { .. } => 6,

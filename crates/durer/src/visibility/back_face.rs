@@ -30,7 +30,7 @@
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::scene::{Camera, Mesh, Projection, Scene};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::view::cull::{Face, face_along, face_from_point, newell_area, triangle_area};
 
 /// Facts about the algorithm.
@@ -115,9 +115,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         let Self::Tested { side, .. } = self;
         if *side == Face::Front { 7 } else { 8 }
     }

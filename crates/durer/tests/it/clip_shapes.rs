@@ -7,7 +7,7 @@ use durer::clip::polygon::{self, PolygonClipper, Shapes, WindingRule};
 use durer::clip::text::{self, Character, Kept, Options, Place, TextClipper, of_strokes};
 use durer::curve::Contours;
 use durer::math::{DVec2, Rect};
-use durer::trace::{NoTrace, Recorder};
+use durer::trace::{NoTrace, PseudocodeLine, Recorder};
 use std::f64::consts::{PI, TAU};
 
 fn rect(low: (f64, f64), high: (f64, f64)) -> Rect {

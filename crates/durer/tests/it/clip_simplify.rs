@@ -1,8 +1,12 @@
 //! Coverages stay coverages when they are simplified.
 
-use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay, signed_area};
-use durer::clip::simplify::coverage::{Options, Step};
-use durer::clip::simplify::{Coverage, LineSimplifier, tolerance_for_share};
+use durer::clip::polygon::{
+    BooleanOp, Shapes, WindingRule,
+    overlay::{self, overlay},
+    signed_area,
+};
+use durer::clip::simplify::coverage::{Coverage, Options, Step};
+use durer::clip::simplify::{LineSimplifier, tolerance_for_share};
 use durer::math::{DVec2, Orientation, orient2d};
 use durer::trace::{NoTrace, Recorder};
 use proptest::prelude::*;

@@ -6,7 +6,7 @@ use durer::fragment::{Blend, FragmentState, Scissor};
 use durer::math::{DVec2, DVec3, IVec2, Vec4};
 use durer::raster::point::{MAX_SIZE, Options, Step, draw, replay};
 use durer::target::Framebuffer;
-use durer::trace::{NoTrace, Recorder};
+use durer::trace::{NoTrace, PseudocodeLine, Recorder};
 use durer::view::window::PixelRect;
 
 fn pixels(center: DVec2, options: &Options) -> Vec<(IVec2, f64)> {

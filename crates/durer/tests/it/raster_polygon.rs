@@ -10,7 +10,7 @@ use durer::raster::polygon::{
 };
 use durer::raster::triangulate::triangulate;
 use durer::target::Pixels;
-use durer::trace::{NoTrace, Recorder};
+use durer::trace::{NoTrace, PseudocodeLine, Recorder};
 
 fn spans(
     method: PolygonRasterizer,

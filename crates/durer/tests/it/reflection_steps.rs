@@ -3,7 +3,7 @@
 use crate::raster_coverage::Random;
 use durer::math::Vec3;
 use durer::shade::metallic_roughness::{Lit, Step, reflect_one, replay};
-use durer::trace::{NoTrace, Recorder};
+use durer::trace::{NoTrace, PseudocodeLine, Recorder};
 
 fn bits(color: Vec3) -> [u32; 3] {
     color.to_array().map(f32::to_bits)

@@ -5,10 +5,9 @@ use durer::scene::{
     AlphaMode, Camera, Filter, Image, Light, LightKind, Material, MipFilter, Projection, Sampler,
     Scene, ShadingModel, Texture, TextureRef, Wrap,
 };
-use durer::shade::{
-    PreparedLights, PreparedMaterials, Reflected, Shading, Surface, TexCoord, color, shade,
-    shade_face, shade_vertex,
-};
+use durer::shade::flat::shade_face;
+use durer::shade::gouraud::{Reflected, shade_vertex};
+use durer::shade::{PreparedLights, PreparedMaterials, Shading, Surface, TexCoord, color, shade};
 
 fn camera() -> Camera {
     Camera {

@@ -420,7 +420,10 @@ fn carpenters_masks_and_shares() {
 #[test]
 fn scan_beams_find_the_areas_that_the_overlay_finds() {
     use durer::clip::polygon::scan_beams::{Options, Step, Trapezoid, replay, scan_beams};
-    use durer::clip::polygon::{BooleanOp, Shapes, overlay};
+    use durer::clip::polygon::{
+        BooleanOp, Shapes,
+        overlay::{self, overlay},
+    };
     let mut random = Random(31);
     for round in 0..60 {
         let mut ring = |n: usize| -> Vec<DVec2> {

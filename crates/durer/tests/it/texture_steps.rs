@@ -3,9 +3,8 @@
 use crate::raster_coverage::Random;
 use durer::math::{Vec2, Vec4};
 use durer::scene::{Filter, Image, MipFilter, Sampler, Wrap};
-use durer::shade::PreparedTexture;
-use durer::shade::texture::{Step, Usage, replay, weights};
-use durer::trace::Recorder;
+use durer::shade::texture::{PreparedTexture, Step, Usage, replay, weights};
+use durer::trace::{PseudocodeLine, Recorder};
 
 const FILTERS: [Filter; 2] = [Filter::Nearest, Filter::Linear];
 const MIPS: [MipFilter; 3] = [MipFilter::None, MipFilter::Nearest, MipFilter::Linear];

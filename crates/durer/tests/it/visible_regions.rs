@@ -2,7 +2,10 @@
 
 use crate::scenes::{Numbers, instance, soup};
 use crate::surface_scenes::{Prepared, each, of_triangles};
-use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
+use durer::clip::polygon::{
+    BooleanOp, Shapes, WindingRule,
+    overlay::{self, overlay},
+};
 use durer::math::{DMat4, DVec2, DVec3, Vec3};
 use durer::scene::{Camera, Light, LightKind, Projection, Scene};
 use durer::shade::PreparedLights;

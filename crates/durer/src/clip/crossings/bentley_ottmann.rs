@@ -17,7 +17,7 @@ use crate::clip::line::Segment;
 use crate::clip::status::Status;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
@@ -101,9 +101,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Ends { .. } => 1,
             Self::Event { .. } => 4,

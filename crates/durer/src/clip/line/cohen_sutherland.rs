@@ -14,7 +14,7 @@ use crate::Result;
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// The facts of Cohen–Sutherland clipping.
 pub const INFO: Info = Info {
@@ -39,10 +39,6 @@ pub const INFO: Info = Info {
         "    c := outcode(P)",
     ],
 };
-
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,9 +67,8 @@ pub enum Step<P> {
     },
 }
 
-impl<P> Step<P> {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for Step<P> {
+    fn line(&self) -> usize {
         match self {
             Self::Codes { .. } => 1,
             Self::Accepted => 3,

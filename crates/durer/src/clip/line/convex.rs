@@ -93,7 +93,7 @@ fn goes_round_once(ring: &[DVec2]) -> bool {
 
 /// A half-plane given by two points: the points on the left of from → to, or on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
+pub(crate) struct Edge {
     /// Any point of the border.
     pub from: DVec2,
     /// Another point of it.

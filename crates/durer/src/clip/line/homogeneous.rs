@@ -48,10 +48,6 @@ pub const INFO: Info = Info {
     ],
 };
 
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
-
 /// Returns the part of a segment in the closed rectangle: with w = 1 at both ends.
 ///
 /// # Errors

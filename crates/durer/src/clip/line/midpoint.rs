@@ -14,7 +14,7 @@ use super::{End, Segment};
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::IVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// The facts of midpoint subdivision.
@@ -42,10 +42,6 @@ pub const INFO: Info = Info {
         "accept AB",
     ],
 };
-
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// A rectangle of pixels, both corners included.
 ///
@@ -110,9 +106,8 @@ pub enum Step {
     Rejected,
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Halved { .. } => 1,
             Self::Rejected => 3,

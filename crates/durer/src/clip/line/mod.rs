@@ -33,7 +33,8 @@ pub mod skala;
 pub mod sobkow_pospisil_yang;
 
 pub use border::{ClipBox, End};
-pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace};
+pub(crate) use convex::Edge;
+pub use convex::{ConvexPolygon, HalfPlane, HalfSpace};
 pub use passage::Relation;
 
 use crate::math::{DVec2, Rect};

@@ -14,7 +14,7 @@ use crate::Result;
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 
 /// The facts of Nicholl–Lee–Nicholl clipping.
@@ -40,10 +40,6 @@ pub const INFO: Info = Info {
         "accept AB",
     ],
 };
-
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,9 +72,8 @@ pub enum Step {
     Rejected,
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Region { .. } => 1,
             Self::Corner { .. } => 4,

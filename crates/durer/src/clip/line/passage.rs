@@ -5,7 +5,7 @@ use super::border::Canonical;
 use super::convex::{self, HalfSpace};
 use super::{End, Segment};
 use crate::clip::exact::EPSILON;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 
 /// Step of an algorithm, in the direction of the caller's segment.
@@ -37,9 +37,9 @@ pub enum Step<P> {
     Rejected,
 }
 
-impl<P> Step<P> {
+impl<P> PseudocodeLine for Step<P> {
     /// Returns the line of the pseudocode that runs, counted from 1; it is the same for all methods of this kind.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Border { relation: Relation::Inside, .. } => 3,
             Self::Border { relation: Relation::Entering, .. } => 4,

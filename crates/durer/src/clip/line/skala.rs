@@ -17,7 +17,7 @@ use crate::Result;
 use crate::clip::exact;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 
 /// The facts of Skala's clipping.
@@ -45,10 +45,6 @@ pub const INFO: Info = Info {
         "accept AB",
     ],
 };
-
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,9 +85,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Accepted { at_once: true } => 1,
             Self::Rejected { beyond: Some(_) } => 2,

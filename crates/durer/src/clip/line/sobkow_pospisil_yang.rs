@@ -14,7 +14,7 @@ use crate::Result;
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 
 /// The facts of Sobkow–Pospisil–Yang clipping.
@@ -40,10 +40,6 @@ pub const INFO: Info = Info {
         "    accept AB",
     ],
 };
-
-/// There is nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// Program for the segments of one line code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,9 +140,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Code { .. } => 1,
             Self::Accepted { at_once: true } => 3,

@@ -3,7 +3,8 @@
 use super::mean_value::MeanValues;
 use super::values::{Values, Zm, between, mix};
 use crate::clip::attribute::Source;
-use crate::clip::polygon::overlay::{Operand, Output};
+use crate::clip::polygon::Operand;
+use crate::clip::polygon::overlay::Output;
 use crate::clip::polygon::{Shapes, signed_area};
 use crate::geometry::{Dimensions, Geometry, Points};
 use crate::math::DVec2;

@@ -12,7 +12,7 @@
 use super::signed_area;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -58,9 +58,8 @@ pub enum Step {
     Turn(DVec2),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Edge { .. } => 2,
             Self::Point(_) => 7,

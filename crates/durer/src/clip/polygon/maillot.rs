@@ -16,7 +16,7 @@ use crate::clip::line::{Segment, cohen_sutherland};
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
@@ -45,10 +45,6 @@ pub const INFO: Info = Info {
         "the points emitted are the ring",
     ],
 };
-
-/// There is nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// The extended code of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,8 +107,17 @@ pub enum Step {
 }
 
 impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+    /// Returns the point that the step adds to the ring.
+    fn point(self) -> Option<DVec2> {
+        match self {
+            Self::Point(p) | Self::Turn { corner: p, .. } => Some(p),
+            Self::Edge { .. } => None,
+        }
+    }
+}
+
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Edge { .. } => 2,
             Self::Point(_) => 4,
@@ -120,14 +125,6 @@ impl Step {
             Self::Turn { turn: Turn::BorderToCorner, .. } => 7,
             Self::Turn { turn: Turn::CornerToCorner, .. } => 8,
             Self::Turn { turn: Turn::Basic, .. } => 9,
-        }
-    }
-
-    /// Returns the point that the step adds to the ring.
-    fn point(self) -> Option<DVec2> {
-        match self {
-            Self::Point(p) | Self::Turn { corner: p, .. } => Some(p),
-            Self::Edge { .. } => None,
         }
     }
 }

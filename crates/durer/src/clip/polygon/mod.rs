@@ -1,6 +1,6 @@
 //! Polygons: the types of shapes, and the algorithms that clip them.
 //!
-//! [`overlay()`] is the robust way to clip: it accepts any rings and returns valid polygons. [`rectangle`] is the fast
+//! [`overlay`] is the robust way to clip: it accepts any rings and returns valid polygons. [`rectangle`] is the fast
 //! path for windows and map tiles. The others are the published algorithms, each with its own preconditions.
 
 pub mod coverage;
@@ -30,7 +30,7 @@ mod walk;
 pub mod weiler_atherton;
 
 pub use nesting::NestingTree;
-pub use overlay::overlay;
+use overlay::overlay;
 pub use shapes::{Polygon, Ring, Shapes, signed_area};
 pub use vertex::Vertex;
 
@@ -52,7 +52,7 @@ crate::info::family! {
         Vatti => vatti::INFO,
         /// [`greiner_hormann`]
         GreinerHormann => greiner_hormann::INFO,
-        /// [`overlay`](mod@overlay)
+        /// [`overlay`]
         Overlay => overlay::INFO,
     }
 }
@@ -61,7 +61,7 @@ impl PolygonClipper {
     /// Runs the algorithm with its default options, by the even-odd rule.
     ///
     /// # Errors
-    /// As [`overlay()`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton if rings of one
+    /// As [`overlay::overlay`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton if rings of one
     /// operand cross or overlap, and for Greiner–Hormann if they also touch the other operand; for the rectangle clip
     /// and Sutherland–Hodgman for operations other than intersection, and for a clip that is not a single rectangle or
     /// a single ring, respectively. [`Error::Parameter`] if that ring is not convex.
@@ -173,6 +173,15 @@ impl WindingRule {
             Self::AbsGeqTwo => winding.unsigned_abs() >= 2,
         }
     }
+}
+
+/// One of the two inputs of a boolean operation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Operand {
+    /// The first.
+    Subject,
+    /// The second.
+    Clip,
 }
 
 /// Boolean operation on two regions, the subject A and the clip B.

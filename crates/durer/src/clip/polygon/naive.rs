@@ -11,10 +11,6 @@ use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
-
 /// Step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {

@@ -7,7 +7,7 @@
 use super::{Ring, WindingRule};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Orientation, orient2d};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Location of a point relative to a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -61,9 +61,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Border { .. } => 3,
             Self::Crosses { winding: 1.., .. } => 5,

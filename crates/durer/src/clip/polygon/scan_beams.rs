@@ -15,7 +15,7 @@ use super::{BooleanOp, Shapes, WindingRule};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::sorting::CompactSort;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -115,9 +115,8 @@ pub enum Step {
     Part(Trapezoid),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Minimum { .. } => 1,
             Self::Beam { .. } => 4,

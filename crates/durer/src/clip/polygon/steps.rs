@@ -1,21 +1,13 @@
 //! The steps of the clippers along linked borders.
 
-use super::Shapes;
 use super::group::group;
+use super::{Operand, Shapes};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 
 /// Empty options: the algorithm has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {}
-
-/// One of the two cyclic lists.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Operand {
-    /// List of the subject.
-    Subject,
-    /// List of the window.
-    Clip,
-}
 
 /// Direction of a list at a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -76,9 +68,9 @@ pub enum Step {
     },
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of both algorithms' pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Listed { .. } | Self::CrossingRings => 1,
             Self::Crossing { .. } => 2,

@@ -22,7 +22,7 @@ use crate::clip::line::convex::{self, HalfSpace};
 use crate::clip::line::{ClipBox, ConvexPolygon, HalfPlane};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
@@ -51,10 +51,6 @@ pub const INFO: Info = Info {
         "the list is the result, one ring",
     ],
 };
-
-/// Empty options: the algorithm has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// Vertex with a position that can be mixed with another vertex of an edge.
 pub trait Vertex<const N: usize>: Copy {
@@ -194,9 +190,8 @@ pub enum Step<V> {
     },
 }
 
-impl<V> Step<V> {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl<V> PseudocodeLine for Step<V> {
+    fn line(&self) -> usize {
         match self {
             Self::Enters { .. } => 3,
             Self::Leaves { .. } => 10,

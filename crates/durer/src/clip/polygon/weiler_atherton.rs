@@ -7,13 +7,13 @@
 
 use super::cyclic::Linked;
 use super::walk::walk_all;
-use super::{BooleanOp, Shapes};
+use super::{BooleanOp, Operand, Shapes};
 use crate::Result;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-pub use super::steps::{Mark, Operand, Options, Step, replay};
+pub use super::steps::{Mark, Options, Step, replay};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {

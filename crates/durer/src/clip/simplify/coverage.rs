@@ -18,7 +18,7 @@ use super::removal::{Guard, Links, Measure, Obstacle, Removal};
 use super::{LineSimplifier, check, douglas_peucker};
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -69,9 +69,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Removed { .. } => 9,
         }

@@ -16,7 +16,7 @@ use super::{check, or_infinite};
 use crate::Result;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// The facts of Douglas–Peucker.
 pub const INFO: Info = Info {
@@ -72,9 +72,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Kept { distance: f64::INFINITY, .. } => 1,
             Self::Kept { .. } => 6,

@@ -15,7 +15,6 @@ mod network;
 mod removal;
 pub mod visvalingam;
 
-pub use coverage::Coverage;
 pub use geometry::{Amount, Dropped, simplify};
 
 use crate::math::DVec2;

@@ -15,7 +15,7 @@ use super::removal::{Free, Links, Measure, Removal};
 use crate::Result;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// The facts of Visvalingam–Whyatt.
 pub const INFO: Info = Info {
@@ -66,9 +66,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Begin { .. } => 1,
             Self::Removed { .. } => 6,

@@ -2,7 +2,11 @@
 
 use super::{Tile, apart, mercator};
 use crate::Result;
-use crate::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay, rectangle};
+use crate::clip::polygon::{
+    BooleanOp, Shapes, WindingRule,
+    overlay::{self, overlay},
+    rectangle,
+};
 use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, I64Vec2, Rect};
 use crate::trace::NoTrace;

@@ -11,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DAffine2, DVec2, IVec2, Rect};
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 const TAKES: Word = Word::new(

@@ -14,7 +14,7 @@ use crate::explain::picture::{Look, Picture, corners};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3, Rect};
-use crate::trace::Recorder;
+use crate::trace::{PseudocodeLine, Recorder};
 
 pub(super) const CYRUS_BECK: Lesson = Lesson {
     name: cyrus_beck::INFO.name,

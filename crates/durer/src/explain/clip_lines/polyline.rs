@@ -11,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Template, Value, Word};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 
 const TAKES: Word =
     Word::new("lines, and rings or a window", "Linienzüge und Ringe oder ein Fenster");

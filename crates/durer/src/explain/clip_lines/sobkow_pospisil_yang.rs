@@ -13,6 +13,7 @@ use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
+use crate::trace::PseudocodeLine;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

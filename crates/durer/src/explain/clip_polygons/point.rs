@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Word};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 const TAKES: Word = Word::new("rings and a point", "Ringe und ein Punkt");

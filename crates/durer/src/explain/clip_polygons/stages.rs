@@ -13,7 +13,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, Rect};
-use crate::trace::Recorder;
+use crate::trace::{PseudocodeLine, Recorder};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

@@ -10,7 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
-use crate::trace::Recorder;
+use crate::trace::{PseudocodeLine, Recorder};
 
 pub(super) const VATTI: Lesson = Lesson {
     name: vatti::INFO.name,

@@ -4,7 +4,8 @@ use super::{
     CLIP, Operands, SUBJECT, TAKES, apart, bars, lecture, letter_and_blade, nested, pentagram,
     squares,
 };
-use crate::clip::polygon::weiler_atherton::{Mark, Operand, Step};
+use crate::clip::polygon::Operand;
+use crate::clip::polygon::weiler_atherton::{Mark, Step};
 use crate::clip::polygon::{greiner_hormann, weiler_atherton};
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::lesson::{Example, Lesson};
@@ -12,6 +13,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

@@ -11,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, Rect};
+use crate::trace::PseudocodeLine;
 use std::f64::consts::TAU;
 
 pub(super) const LESSON: Lesson = Lesson {

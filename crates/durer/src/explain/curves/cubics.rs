@@ -10,7 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Template, Value, Word};
 use crate::math::DVec2;
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, PseudocodeLine};
 use crate::{Error, Result};
 
 pub(super) const CATMULL_ROM: Lesson = Lesson {

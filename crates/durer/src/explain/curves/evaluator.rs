@@ -8,6 +8,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Template, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -12,7 +12,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Word};
 use crate::math::DVec2;
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, PseudocodeLine};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: FLATTEN.name,

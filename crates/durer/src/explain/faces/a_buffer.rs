@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::Vec4;
+use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::a_buffer::{FULL, Fragment, INFO, Step, weights};
 
 pub(super) const LESSON: Lesson = Lesson {

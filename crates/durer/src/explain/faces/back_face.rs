@@ -11,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::view::cull::Face;
 use crate::visibility::back_face::{Eye, INFO, Options, Step, remove};
 

@@ -11,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::back_face::Eye;
 use crate::visibility::line::appel::{self, Cause};
 use crate::visibility::line::face_net::FaceNet;

@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DMat4, DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::Face;
 use crate::visibility::polygons::csg::{Expression, INFO, Part, Step, items};
 use crate::{Error, Result};

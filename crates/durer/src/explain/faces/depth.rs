@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::{painter, z_buffer};
 
 pub(super) const Z_BUFFER: Lesson = Lesson {

@@ -11,6 +11,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::target::drawing::LineClass;
+use crate::trace::PseudocodeLine;
 use crate::visibility::line::Intersections;
 use crate::visibility::line::edge_lines::ClassSet;
 use crate::visibility::line::hidden_line::{INFO, Options, Span, Step, draw};

@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::hierarchical_z::{INFO, Options, Step, Test, items};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 use crate::visibility::line::horizon_curves::{Curve, INFO, Options, Piece, Seen, Step, draw};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::octree::{INFO, Options, Step, items};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::Screen;
 use crate::visibility::polygons::patch_subdivision::{INFO, Options, Part, Patch, Step, render};
 use crate::{Error, Result};

@@ -10,7 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, PseudocodeLine};
 use crate::visibility::polygons::Screen;
 use crate::visibility::polygons::portals::{Eye, INFO, Options, Plan, Step, Visit, Window, visits};
 use crate::{Error, Result};

@@ -14,6 +14,7 @@ use crate::math::{DVec2, DVec3, Vec3};
 use crate::scene::{Camera, Light, LightKind, Material, Part, ShadingModel};
 use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
+use crate::trace::PseudocodeLine;
 use crate::view::View;
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;

@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::back_face::Eye;
 use crate::visibility::line::roberts::{Body, Bound, INFO, Line, Options, Step, Values, draw};
 use crate::work::Work;

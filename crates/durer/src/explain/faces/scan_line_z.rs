@@ -13,6 +13,7 @@ use crate::math::DVec2;
 use crate::scene::Camera;
 use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
+use crate::trace::PseudocodeLine;
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::scan_line_z::{INFO, Options, Step, render};

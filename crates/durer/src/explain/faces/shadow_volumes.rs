@@ -11,6 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
+use crate::trace::PseudocodeLine;
 use crate::visibility::back_face::Eye;
 use crate::visibility::polygons::Face;
 use crate::visibility::polygons::shadow_volumes::{INFO, Options, Side, Step, render};

@@ -10,6 +10,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::raster::polygon::{edge_fill, edge_flag};
 use crate::target::Pixels;
+use crate::trace::PseudocodeLine;
 
 pub(super) const EDGE_FILL: Lesson = Lesson {
     name: edge_fill::INFO.name,

@@ -15,6 +15,7 @@ use crate::raster::coverage::cell_sums::{self, Cell, Step};
 use crate::raster::coverage::{self, Face, PartitionStep};
 use crate::sorting::CompactSort;
 use crate::target::Pixels;
+use crate::trace::PseudocodeLine;
 
 pub(super) const CELLS: Lesson = Lesson {
     name: cell_sums::INFO.name,

@@ -12,7 +12,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::raster::polygon::edge_table::{Edge, INFO, Step, fill};
-use crate::trace::Recorder;
+use crate::trace::{PseudocodeLine, Recorder};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::raster::polygon::ordered_edge_list::{INFO, Step, fill};
+use crate::trace::PseudocodeLine;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

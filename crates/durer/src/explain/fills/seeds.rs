@@ -11,6 +11,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, IVec2};
 use crate::raster::seed_fill::{self, Run, SeedFill, Step, flood_fill};
 use crate::target::Pixels;
+use crate::trace::PseudocodeLine;
 
 pub(super) const NAIVE: Lesson = Lesson {
     name: seed_fill::NAIVE.name,

@@ -11,6 +11,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, IVec2};
 use crate::raster::triangle::tiles::{TILE, Verdict};
 use crate::raster::triangle::{SnappedTriangle, edge_function, edge_walking, tiles};
+use crate::trace::PseudocodeLine;
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 

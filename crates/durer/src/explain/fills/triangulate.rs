@@ -13,6 +13,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::raster::ear_clipping::ears;
 use crate::raster::triangulate::{INFO, Step};
+use crate::trace::PseudocodeLine;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,

@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DAffine2, IVec2};
 use crate::raster::conic::{self, Region, Step, replay};
+use crate::trace::PseudocodeLine;
 
 pub(super) const CIRCLE: Lesson = Lesson {
     name: conic::CIRCLE.name,

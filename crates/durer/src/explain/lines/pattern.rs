@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Template, Value, Word};
 use crate::math::{DVec2, IVec2};
 use crate::raster::line::pattern::{INFO, Options, Pen, Step, draw, replay};
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

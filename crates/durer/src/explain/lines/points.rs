@@ -9,6 +9,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, IVec2, Rect};
 use crate::raster::point::{self, Options, Step};
+use crate::trace::PseudocodeLine;
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 use std::f64::consts::{PI, TAU};

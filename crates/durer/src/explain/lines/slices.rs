@@ -11,6 +11,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::IVec2;
 use crate::raster::line::double_step::{self, Pattern};
 use crate::raster::line::run_slice::{self, Run};
+use crate::trace::PseudocodeLine;
 
 pub(super) const RUN_SLICE: Lesson = Lesson {
     name: run_slice::INFO.name,

@@ -10,6 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Template, Value, Word};
 use crate::math::IVec2;
 use crate::raster::line::anti_aliased::{self, SmoothLine, Step};
+use crate::trace::PseudocodeLine;
 
 pub(super) const WU: Lesson = Lesson {
     name: anti_aliased::WU.name,

@@ -10,7 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, IVec2};
 use crate::raster::line::{self, LineRasterizer, Step, bresenham, dda, equation};
-use crate::trace::Recorder;
+use crate::trace::{PseudocodeLine, Recorder};
 
 pub(super) const EQUATION: Lesson = Lesson {
     name: equation::INFO.name,

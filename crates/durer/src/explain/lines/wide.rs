@@ -9,6 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::raster::line::wide::{Cap, INFO, Join, Part, Step, Stroke, outline};
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

@@ -16,7 +16,7 @@ use crate::raster::triangle::Options;
 use crate::scene::{Filter, Image, MipFilter, Sampler, Wrap};
 use crate::shade::texture::{MIP_MAP, Step, Usage};
 use crate::shade::{PreparedTexture, TexCoord};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 

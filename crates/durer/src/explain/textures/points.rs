@@ -13,6 +13,7 @@ use crate::math::{DAffine2, DVec2, Rect, Vec2};
 use crate::scene::{Filter, MipFilter, Sampler, Wrap};
 use crate::shade::PreparedTexture;
 use crate::shade::texture::{INFO, Step, Usage, weights};
+use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {

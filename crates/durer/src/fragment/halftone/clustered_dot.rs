@@ -8,7 +8,7 @@
 use super::light;
 use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -69,9 +69,8 @@ pub struct Step {
     pub white: bool,
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         if self.white { 7 } else { 8 }
     }
 }

@@ -8,7 +8,7 @@
 use super::{light, of_level};
 use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -66,9 +66,8 @@ pub struct Step {
     pub error: f32,
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         5
     }
 }

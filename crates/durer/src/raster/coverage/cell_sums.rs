@@ -15,7 +15,7 @@ use crate::curve::Contours;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::collections::BTreeMap;
 
 /// Facts about the algorithm.
@@ -92,9 +92,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Piece { .. } => 4,
             Self::Pixel { .. } => 8,

@@ -12,7 +12,7 @@ use crate::curve::Contours;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -72,9 +72,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Area { .. } => 6,
             Self::Pixel { .. } => 9,

@@ -7,7 +7,7 @@
 
 use crate::math::{DVec2, DVec3, IVec2};
 use crate::raster::triangle::Options;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// A corner of a triangle with the values to interpolate.
@@ -48,9 +48,9 @@ pub enum Step {
     },
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode of Gouraud's, Phong's and perspective-correct interpolation.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Ends { .. } => 4,
             Self::Pixel { .. } => 6,

@@ -11,7 +11,7 @@ use super::Course;
 use crate::curve::Contours;
 use crate::info::{Class, Coherence, Info, Occluder, family};
 use crate::math::{DVec2, IVec2};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 pub use super::Options;
 
@@ -85,9 +85,9 @@ pub struct Step {
     pub intensity: u8,
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode that sets a pixel; it is the same in both algorithms.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         8
     }
 }

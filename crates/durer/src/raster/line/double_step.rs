@@ -11,7 +11,7 @@
 use super::{Course, Options};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -113,8 +113,17 @@ pub enum Step {
 }
 
 impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+    /// Returns the pixels that the step lights.
+    pub fn pixels(&self) -> &[IVec2] {
+        match self {
+            Self::Start { pixel, .. } | Self::Last { pixel, .. } => std::slice::from_ref(pixel),
+            Self::Pair { pixels, .. } => pixels,
+        }
+    }
+}
+
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Start { .. } => 2,
             Self::Pair { pattern: Pattern::Straight, .. } => 6,
@@ -122,14 +131,6 @@ impl Step {
             Self::Pair { pattern: Pattern::Second, .. } => 8,
             Self::Pair { pattern: Pattern::First, .. } => 9,
             Self::Last { .. } => 12,
-        }
-    }
-
-    /// Returns the pixels that the step lights.
-    pub fn pixels(&self) -> &[IVec2] {
-        match self {
-            Self::Start { pixel, .. } | Self::Last { pixel, .. } => std::slice::from_ref(pixel),
-            Self::Pair { pixels, .. } => pixels,
         }
     }
 }

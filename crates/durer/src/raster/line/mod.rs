@@ -17,7 +17,7 @@ pub mod wide;
 
 use crate::info::family;
 use crate::math::IVec2;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 family! {
     /// Methods for the pixels of a thin line.
@@ -87,9 +87,9 @@ pub struct Step {
     pub e: i64,
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode that sets a pixel; it is the same in the first three algorithms.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         6
     }
 }

@@ -10,7 +10,7 @@
 use super::bresenham;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -84,9 +84,8 @@ pub struct Step {
     pub down: bool,
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         if self.down { 7 } else { 5 }
     }
 }

@@ -12,7 +12,7 @@
 use super::{Course, Options};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -68,22 +68,23 @@ pub struct Step {
 }
 
 impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
-        match (self.run, self.is_cut) {
-            (Run::First, _) => 5,
-            (_, true) => 12,
-            (Run::Short, false) => 9,
-            (Run::Long, false) => 11,
-        }
-    }
-
     /// Returns the pixels of the run.
     pub fn pixels(&self) -> impl Iterator<Item = IVec2> {
         let [from, to] = self.ends;
         let way = (to - from).signum();
         let count = (to - from).abs().max_element();
         (0..=count).map(move |k| from + way * k)
+    }
+}
+
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
+        match (self.run, self.is_cut) {
+            (Run::First, _) => 5,
+            (_, true) => 12,
+            (Run::Short, false) => 9,
+            (Run::Long, false) => 11,
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use super::rows::for_each_crossing;
 use crate::curve::Contours;
 use crate::info::{Class, Info, Occluder};
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// The facts of edge fill.
 pub const INFO: Info = Info {
@@ -88,15 +88,17 @@ impl Step {
         self.x.min(self.fence)..self.x.max(self.fence)
     }
 
-    /// Returns the line of the pseudocode of fence fill, counted from 1; edge fill has its crossings left of the fence.
-    pub fn line(&self) -> usize {
-        if self.x <= self.fence { 5 } else { 6 }
-    }
-
     fn apply(&self, plane: &mut Pixels<bool>) {
         let row = plane.row_mut(self.y);
         let (from, to) = (self.columns().start as usize, self.columns().end as usize);
         row.get_mut(from..to).into_iter().flatten().for_each(|pixel| *pixel = !*pixel);
+    }
+}
+
+impl PseudocodeLine for Step {
+    /// Returns the line of the pseudocode of fence fill, counted from 1; edge fill has its crossings left of the fence.
+    fn line(&self) -> usize {
+        if self.x <= self.fence { 5 } else { 6 }
     }
 }
 

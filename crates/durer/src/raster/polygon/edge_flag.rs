@@ -15,7 +15,7 @@ use crate::curve::Contours;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::span::Span;
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -56,9 +56,8 @@ pub enum Step {
     Inside(Span),
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Flag { .. } => 4,
             Self::Inside(_) => 9,

@@ -14,7 +14,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::coverage::FillRule;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
 use crate::raster::span::Span;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -74,9 +74,8 @@ pub enum Step {
     Span(Span),
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Table(_) => 1,
             Self::Enter { .. } => 4,

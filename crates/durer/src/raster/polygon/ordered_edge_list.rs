@@ -22,7 +22,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::span::Span;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -65,9 +65,8 @@ pub enum Step {
     Span(Span),
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Crossing { .. } => 5,
             Self::Span(_) => 9,

@@ -16,7 +16,7 @@ mod words;
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder, family};
 use crate::target::Pixels;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::Charge;
 use region::Region;
 
@@ -56,9 +56,9 @@ pub enum Step {
     Skip(Run),
 }
 
-impl Step {
+impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode; it is the same in both forms.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Skip(_) => 4,
             Self::Fill { .. } => 5,

@@ -7,7 +7,7 @@
 pub use super::Options;
 use super::{Edge, SnappedTriangle, Span};
 use crate::info::{Class, Coherence, Info, Occluder};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -47,9 +47,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Sample { .. } => 6,
         }

@@ -9,7 +9,7 @@ pub use super::Options;
 use super::{SnappedTriangle, Span};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -57,9 +57,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Edges { .. } => 3,
             Self::Row { .. } => 7,

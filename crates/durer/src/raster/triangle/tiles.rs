@@ -9,7 +9,7 @@
 pub use super::Options;
 use super::{Edge, SnappedTriangle, Span};
 use crate::info::{Class, Coherence, Info, Occluder};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::view::window::PixelRect;
 
 /// Facts about the algorithm.
@@ -67,9 +67,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         let Self::Tile { verdict, .. } = self;
         match verdict {
             Verdict::Rejected => 4,

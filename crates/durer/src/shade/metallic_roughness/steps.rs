@@ -4,7 +4,7 @@ use super::{Dielectric, Substance, lit, point};
 use crate::math::Vec3;
 use crate::shade::lane::Vec3Lane;
 use crate::shade::normal::face_viewer;
-use crate::trace::{Recorder, Tracer};
+use crate::trace::{PseudocodeLine, Recorder, Tracer};
 
 /// A point of a surface and a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,9 +59,8 @@ pub enum Step {
     Sum(Vec3),
 }
 
-impl Step {
-    /// Returns the line of [`INFO`](super::INFO)'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Cosines(_) => 1,
             Self::Distribution { .. } => 2,

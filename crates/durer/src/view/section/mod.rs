@@ -15,7 +15,7 @@ use super::cull::triangle_area;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec3, Plane, Vec3, Vec4};
 use crate::scene::{Material, Scene, ShadingModel, Topology};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -84,9 +84,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Plane(_) => 1,
             Self::Triangle { inside: [a, b, c], .. } if a == b && b == c => 4,

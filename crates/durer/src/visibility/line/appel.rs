@@ -19,7 +19,7 @@ use super::hidden_line::Span;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::sorting::CompactSort;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
@@ -150,9 +150,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Contours { .. } => 1,
             Self::Ray { .. } => 3,

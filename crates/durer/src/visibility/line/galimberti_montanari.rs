@@ -17,7 +17,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::sorting::CompactSort;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::{Charge, Work};
 
 /// The facts.
@@ -164,9 +164,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Hiders { .. } => 1,
             Self::Compared { .. } => 3,

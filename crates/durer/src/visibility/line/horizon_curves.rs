@@ -12,7 +12,7 @@
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::Work;
 use crate::{Error, Result};
 
@@ -126,9 +126,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Point { .. } => 4,
             Self::Crossing { .. } => 7,

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// A run of faces of one instance and one material.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FaceRun {
+pub(crate) struct FaceRun {
     /// The items of its triangles.
     pub items: Range<u32>,
     /// Index into [`Scene::instances`].

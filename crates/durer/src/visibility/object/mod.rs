@@ -10,7 +10,8 @@ pub(crate) mod weld;
 
 pub use bodies::{Bodies, Body};
 pub use edges::{Edges, Side};
-pub use faces::{FaceRun, Faces};
+pub(crate) use faces::FaceRun;
+pub use faces::Faces;
 pub use orientation::scene::SceneOrientation;
 pub use round::{Cylinder, cylinders};
 pub use weld::Weld;

@@ -29,7 +29,7 @@ pub(super) mod scene;
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::view::cull::newell_area;
 use crate::{Error, Result};
 
@@ -123,9 +123,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Begin { .. } => 2,
             Self::Reached { .. } => 5,

@@ -9,7 +9,7 @@
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Vec4};
 use crate::sorting::CompactSort;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -131,9 +131,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Look { .. } => 4,
             Self::Overlap { .. } => 7,

@@ -16,7 +16,7 @@ use crate::clip::polygon::BooleanOp;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -44,10 +44,6 @@ pub const INFO: Info = Info {
         "        no face is left: the span stays empty",
     ],
 };
-
-/// There is nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options;
 
 /// Term of an expression in reverse Polish notation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -189,9 +185,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Span { .. } => 4,
             Self::Divide { .. } => 5,

@@ -17,7 +17,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec3, Plane};
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::depth_sort::Test;
 use crate::work::Charge;
 
@@ -113,9 +113,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Look { .. } => 3,
             Self::Tested { passed, .. } => match passed {

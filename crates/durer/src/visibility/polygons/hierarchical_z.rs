@@ -18,7 +18,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -137,9 +137,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Cell { .. } => 1,
             Self::Visit { .. } => 4,

@@ -11,7 +11,7 @@ use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -77,9 +77,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Sorted { .. } => 3,
             Self::Paint { .. } => 6,

@@ -17,7 +17,7 @@ use crate::curve::bezier::{bicubic, split};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3};
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::ops::Range;
 
@@ -248,9 +248,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Clear => 1,
             Self::Drop { .. } => 4,

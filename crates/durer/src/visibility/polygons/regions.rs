@@ -12,11 +12,14 @@
 use super::Face;
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::by_borders;
-use crate::clip::polygon::{BooleanOp, Shapes, overlay};
+use crate::clip::polygon::{
+    BooleanOp, Shapes,
+    overlay::{self, overlay},
+};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::sorting::CompactSort;
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::work::Work;
 use crate::{Error, Result};
 
@@ -102,9 +105,8 @@ pub enum Step {
     Seen(Region),
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Seen(_) => 3,
             Self::Nearest { .. } => 4,

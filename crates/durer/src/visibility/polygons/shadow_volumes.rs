@@ -23,7 +23,7 @@ use crate::clip::polygon::point::winding_number;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, DVec3, orient2d_value};
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::{NoTrace, Tracer};
+use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::visibility::back_face::Eye;
 use std::collections::BTreeMap;
 
@@ -181,9 +181,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Caster { .. } => 2,
             Self::Pixel { .. } => 4,

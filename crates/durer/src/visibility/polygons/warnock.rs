@@ -16,7 +16,7 @@ use crate::math::DVec2;
 use crate::raster::span::Span;
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::warnock::Division;
 use crate::visibility::surface::window::{Relation, SampleRect};
 
@@ -113,9 +113,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Look { .. } => 2,
             Self::Simple { rule, .. } => 2 + usize::from(rule.number()),

@@ -16,7 +16,7 @@ use crate::math::DVec2;
 use crate::raster::polygon::edge_table::{Edge, table};
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -107,9 +107,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Edge(_) => 1,
             Self::Polygon { .. } => 2,

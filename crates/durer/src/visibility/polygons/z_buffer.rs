@@ -8,7 +8,7 @@ use super::{Face, Screen};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -64,9 +64,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Clear => 1,
             Self::Face { .. } => 2,

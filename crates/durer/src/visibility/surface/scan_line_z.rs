@@ -14,7 +14,7 @@
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::Framebuffer;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{Layers, write_row};
 pub use crate::visibility::surface::picture::Options;
@@ -82,9 +82,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Row { .. } => 3,
             Self::Enter { .. } => 5,

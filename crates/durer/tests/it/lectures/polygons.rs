@@ -2,8 +2,9 @@
 
 use super::p;
 use durer::clip::line::HalfPlane;
+use durer::clip::polygon::Operand;
 use durer::clip::polygon::sutherland_hodgman::by_borders::{self, Rule, Step as Edge};
-use durer::clip::polygon::weiler_atherton::{self, Mark, Operand, Step as Walk};
+use durer::clip::polygon::weiler_atherton::{self, Mark, Step as Walk};
 use durer::clip::polygon::{
     BooleanOp, Shapes, WindingRule, greiner_hormann, liang_barsky, maillot, naive, overlay,
     sutherland_hodgman,

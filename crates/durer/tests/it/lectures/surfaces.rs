@@ -10,7 +10,7 @@ use durer::fragment::{
 use durer::info::{Coherence, Occluder};
 use durer::math::{DVec3, DVec4, Rect, Vec4};
 use durer::target::Framebuffer;
-use durer::trace::Recorder;
+use durer::trace::{PseudocodeLine, Recorder};
 use durer::visibility::polygons::warnock::{self, Rule, Step as Rules};
 use durer::visibility::polygons::{Face, Screen};
 use durer::visibility::surface::depth_sort::Test;

@@ -9,9 +9,8 @@ use durer::raster::interpolate::barycentric_3d;
 use durer::scene::{
     Camera, Light, LightKind, Material, Mesh, Part, Projection, Scene, ShadingModel,
 };
-use durer::shade::{
-    PreparedLights, PreparedMaterials, Reflected, Shading, Surface, shade, shade_vertex,
-};
+use durer::shade::gouraud::{Reflected, shade_vertex};
+use durer::shade::{PreparedLights, PreparedMaterials, Shading, Surface, shade};
 use durer::target::{Framebuffer, Pixels};
 use durer::trace::Recorder;
 use durer::view::View;

@@ -1,6 +1,7 @@
 //! Laws that hold for every input, on deliberately hard inputs.
 
-use durer::clip::polygon::overlay::{self, Operand, Options, Output, overlay};
+use durer::clip::polygon::Operand;
+use durer::clip::polygon::overlay::{self, Options, Output, overlay};
 use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
 use durer::math::DVec2;
 use durer::trace::{NoTrace, Recorder};

@@ -1,7 +1,8 @@
 //! `overlay()` on integers.
 
 use durer::Error;
-use durer::clip::polygon::overlay::{self, Operand, Options, Origin, Output, overlay};
+use durer::clip::polygon::Operand;
+use durer::clip::polygon::overlay::{self, Options, Origin, Output, overlay};
 use durer::clip::polygon::vatti::vatti;
 use durer::clip::polygon::{BooleanOp, Shapes};
 use durer::math::{DVec2, I64Vec2};

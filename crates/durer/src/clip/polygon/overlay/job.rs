@@ -27,7 +27,7 @@ pub struct Task<'a, P: Vertex> {
     pub clip: &'a Shapes<P>,
     pub op: BooleanOp,
     pub options: &'a Options,
-    pub winder: Winder,
+    pub(crate) winder: Winder,
 }
 
 /// Overlays of points of one kind. Its functions are not generic, so that they are compiled once and not in each crate that

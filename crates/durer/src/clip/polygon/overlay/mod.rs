@@ -34,11 +34,11 @@ mod tests;
 mod whole;
 mod winding;
 
-use super::{BooleanOp, NestingTree, Shapes, Vertex, WindingRule};
+use super::{BooleanOp, NestingTree, Operand, Shapes, Vertex, WindingRule};
 use crate::Result;
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::Work;
 
 use edge::Winding;
@@ -129,9 +129,8 @@ pub enum Step<P = DVec2> {
     },
 }
 
-impl<P> Step<P> {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl<P> PseudocodeLine for Step<P> {
+    fn line(&self) -> usize {
         match self {
             Self::Grid { .. } => 1,
             Self::Crossing { .. } => 2,
@@ -154,15 +153,6 @@ pub fn replay<P: Vertex>(steps: &[Step<P>]) -> Shapes<P> {
     }
     shapes.end_polygon();
     shapes
-}
-
-/// One of the two inputs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Operand {
-    /// The first.
-    Subject,
-    /// The second.
-    Clip,
 }
 
 /// An edge of the input: from a point of a ring to the next point of that ring.
@@ -263,7 +253,7 @@ impl<P: Vertex> Output<P> {
 /// are rounded to the nearest whole numbers, ties up and to the right.
 ///
 /// ```
-/// use durer::clip::polygon::{BooleanOp, Shapes, overlay};
+/// use durer::clip::polygon::{BooleanOp, Shapes, overlay::{self, overlay}};
 /// use durer::math::DVec2;
 /// use durer::trace::NoTrace;
 ///
@@ -277,7 +267,7 @@ impl<P: Vertex> Output<P> {
 /// With whole numbers:
 ///
 /// ```
-/// use durer::clip::polygon::{BooleanOp, Shapes, overlay};
+/// use durer::clip::polygon::{BooleanOp, Shapes, overlay::{self, overlay}};
 /// use durer::math::I64Vec2;
 /// use durer::trace::NoTrace;
 ///
@@ -307,7 +297,7 @@ pub fn overlay<P: Vertex>(
 
 /// Method for finding winding numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Winder {
+pub(crate) enum Winder {
     /// Method by connected parts of the graph.
     Parts,
     /// Method by a sweep with a list of active edges.

@@ -29,7 +29,7 @@ use super::Shapes;
 use crate::clip::attribute::{NoSources, Provenance, Source};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use rings::{Clipper, Unprepared};
 
@@ -93,9 +93,8 @@ pub enum Step {
     PolygonDone,
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Inside { .. } => 2,
             Self::Outside { .. } => 3,

@@ -6,7 +6,7 @@
 use super::{Vertex, cut, finite_vertices};
 use crate::Result;
 use crate::clip::line::HalfSpace;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 
 /// Rule for an edge, by the sides of a border that its two ends are on.
@@ -69,9 +69,9 @@ pub enum Step<V> {
     },
 }
 
-impl<V> Step<V> {
+impl<V> PseudocodeLine for Step<V> {
     /// Returns the line of [`super::INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+    fn line(&self) -> usize {
         match self {
             Self::Edge { rule: Rule::InIn, .. } => 4,
             Self::Edge { rule: Rule::InOut, .. } => 5,

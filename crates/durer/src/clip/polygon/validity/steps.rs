@@ -2,6 +2,7 @@
 
 use super::{Fault, Flaw, sort};
 use crate::math::DVec2;
+use crate::trace::PseudocodeLine;
 
 /// Relation of two edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,9 +46,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Ring { .. } => 1,
             Self::Pair { relation, .. } => match relation {

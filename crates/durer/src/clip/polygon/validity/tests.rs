@@ -1,6 +1,7 @@
 //! Small shapes with every fault, and random squares.
 
 use super::*;
+use crate::trace::PseudocodeLine;
 
 fn shapes(polygons: &[&[&[(f64, f64)]]]) -> Shapes {
     let mut shapes = Shapes::new();

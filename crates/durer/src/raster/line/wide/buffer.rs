@@ -10,7 +10,7 @@
 use super::{Cap, Join, Stroke, outline};
 use crate::clip::mask::Area;
 use crate::clip::polygon::{
-    BooleanOp, Shapes, WindingRule, overlay, overlay::Options as OverlayOptions,
+    BooleanOp, Shapes, WindingRule, overlay::Options as OverlayOptions, overlay::overlay,
 };
 use crate::curve::{Contours, Path};
 use crate::geometry::Geometry;

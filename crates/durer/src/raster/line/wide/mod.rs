@@ -21,7 +21,7 @@ mod sides;
 use crate::curve::{Contours, Path, PathElement};
 use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 pub(crate) use near::parts_near;
 use sides::Pen;
@@ -122,9 +122,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Ring => 3,
             Self::Point { part: Part::Join, .. } => 6,

@@ -5,7 +5,7 @@ use crate::math::{DVec3, in_sector};
 
 /// A place where a line runs across an edge on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing {
+pub(crate) struct Crossing {
     /// Parameter on the page, from the line's first corner to its second.
     pub t: f64,
     /// True if the edge is nearer to the eye there than the line.
@@ -16,7 +16,7 @@ pub struct Crossing {
 
 /// A place where a line goes through a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pierce {
+pub(crate) struct Pierce {
     /// Parameter on the page, from the line's first corner to its second.
     pub t: f64,
     /// True if the line goes from the eye's side of the face to the other one.

@@ -11,7 +11,6 @@ mod carry;
 mod meet;
 
 pub(super) use carry::Carrier;
-pub use meet::{Crossing, Pierce};
 
 use super::roberts::numbered;
 use crate::math::{DVec2, DVec3, orient2d_value};

@@ -8,6 +8,7 @@ use super::span::Span;
 use super::{Options, cut};
 use crate::math::DVec2;
 use crate::target::drawing::{Line, LineClass};
+use crate::trace::PseudocodeLine;
 
 /// Step of the algorithm.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,15 +34,6 @@ pub enum Step {
 }
 
 impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
-        match self {
-            Self::Page(_) => 1,
-            Self::Line { covers, .. } if covers.is_empty() => 12,
-            Self::Line { .. } => 10,
-        }
-    }
-
     /// Returns the parts of a line by their invisibility, in their order along it; none for other steps.
     pub fn spans(&self) -> Vec<Span> {
         let mut found = Vec::new();
@@ -49,6 +41,16 @@ impl Step {
             spans(covers, *fold, 0.0, true, &mut found);
         }
         found
+    }
+}
+
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
+        match self {
+            Self::Page(_) => 1,
+            Self::Line { covers, .. } if covers.is_empty() => 12,
+            Self::Line { .. } => 10,
+        }
     }
 }
 

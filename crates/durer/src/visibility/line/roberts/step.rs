@@ -2,6 +2,7 @@
 
 use super::Line;
 use crate::math::DVec3;
+use crate::trace::PseudocodeLine;
 
 /// Values of one plane of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,9 +100,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Body { .. } => 3,
             Self::SelfHidden { .. } => 4,

@@ -20,7 +20,7 @@ use crate::math::DVec3;
 use crate::raster::span::Span;
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use std::collections::BTreeMap;
 use tree::{Cell, Division, Holding, Octree};
 
@@ -109,9 +109,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Cell { .. } => 2,
             Self::LeaveOut { .. } => 4,

@@ -20,7 +20,7 @@ use super::{Face, Screen, pieces};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::target::{NO_ITEM, Pixels};
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::view::cull::{Face as Side, face_from_point, newell_area};
 use crate::{Error, Result};
 
@@ -169,9 +169,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of [`INFO`]'s pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Enter(Visit { portals: 0, .. }) => 1,
             Self::Enter(_) => 3,

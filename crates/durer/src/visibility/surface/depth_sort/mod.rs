@@ -24,7 +24,7 @@ use crate::raster::fixed::unsnap;
 use crate::raster::span::Span;
 use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::picture;
@@ -146,9 +146,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Look { .. } => 3,
             Self::Tested { .. } => 6,

@@ -22,7 +22,7 @@ use crate::math::DVec3;
 use crate::shade::PreparedLights;
 use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::Samples;
 use crate::visibility::surface::input::{METHOD, SurfaceInput, TriangleSet};
 use crate::visibility::surface::layers::mean;
@@ -145,9 +145,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode that runs, counted from 1.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Begin => 1,
             Self::Ray { kind: RayKind::Primary | RayKind::Sample, .. } => 3,

@@ -20,7 +20,7 @@ use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::PreparedLights;
 use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
-use crate::trace::Tracer;
+use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::layers::{below_color, mean};
@@ -140,9 +140,8 @@ pub enum Step {
     },
 }
 
-impl Step {
-    /// Returns the line of the pseudocode.
-    pub fn line(&self) -> usize {
+impl PseudocodeLine for Step {
+    fn line(&self) -> usize {
         match self {
             Self::Look { .. } => 1,
             Self::Empty { .. } => 2,
