@@ -39,14 +39,18 @@ pub fn scattered(count: usize) -> Vec<Stroke> {
     (0..count).map(&mut stroke).collect()
 }
 
-/// Orders and joins strokes.
+/// Orders strokes and joins them, all of straight lines.
 fn ordered(strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
     let chains = strokes.into_iter().map(Chain::Straight).collect();
-    let straight = |chain| match chain {
+    let stroke = |chain| match chain {
         Chain::Straight(stroke) => stroke,
-        Chain::Curved(_) => panic!("strokes became a curve"),
+        Chain::Curved(curve) => {
+            let ends = curve.pieces.iter().map(|piece| piece.end());
+            let points = std::iter::once(curve.start).chain(ends).collect();
+            Stroke { points, closed: curve.closed }
+        }
     };
-    ordered_chains(chains, start).into_iter().map(straight).collect()
+    ordered_chains(chains, start).into_iter().map(stroke).collect()
 }
 
 /// Returns the length of pen-up moves between strokes in drawing order.
