@@ -16,7 +16,7 @@ use crate::math::{DMat4, DVec3, DVec4, Plane};
 use crate::trace::Tracer;
 
 /// The facts of clipping in the world.
-pub(crate) const WORLD: Info = Info {
+pub const WORLD: Info = Info {
     name: "world",
     title: "Against six planes before the camera transform",
     authors: "Ivan Sutherland, Gary Hodgman",
@@ -41,7 +41,7 @@ pub(crate) const WORLD: Info = Info {
 };
 
 /// The facts of clipping in clip space.
-pub(crate) const CLIP_SPACE: Info = Info {
+pub const CLIP_SPACE: Info = Info {
     name: "clip-space",
     title: "In clip space",
     authors: "James Blinn, Martin Newell",
@@ -66,7 +66,7 @@ pub(crate) const CLIP_SPACE: Info = Info {
 };
 
 /// The facts of clipping after the division.
-pub(crate) const AFTER_DIVISION: Info = Info {
+pub const AFTER_DIVISION: Info = Info {
     name: "after-division",
     title: "After the division, the eye plane removed first",
     authors: "William Newman, Robert Sproull",
@@ -90,7 +90,7 @@ pub(crate) const AFTER_DIVISION: Info = Info {
 };
 
 /// The facts of clipping in the viewport.
-pub(crate) const VIEWPORT: Info = Info {
+pub const VIEWPORT: Info = Info {
     name: "viewport",
     title: "In the viewport, in two dimensions",
     authors: "Ivan Sutherland, Gary Hodgman",
@@ -114,7 +114,7 @@ pub(crate) const VIEWPORT: Info = Info {
 };
 
 /// The facts of clipping per pixel.
-pub(crate) const PER_PIXEL: Info = Info {
+pub const PER_PIXEL: Info = Info {
     name: "per-pixel",
     title: "Per pixel: scissor, masks and depth range",
     authors: "Mark Segal, Kurt Akeley",

@@ -33,7 +33,7 @@ const PSEUDOCODE: &[&str] = &[
 ];
 
 /// Facts about clipping whole strings.
-pub(crate) const STRING: Info = Info {
+pub const STRING: Info = Info {
     name: "text-by-string",
     title: "All-or-none string clipping",
     authors: "D. Hearn, M. P. Baker",
@@ -48,7 +48,7 @@ pub(crate) const STRING: Info = Info {
 };
 
 /// Facts about clipping whole characters.
-pub(crate) const CHARACTER: Info = Info {
+pub const CHARACTER: Info = Info {
     name: "text-by-character",
     title: "All-or-none character clipping",
     cost: "O(c) for c characters",
@@ -57,7 +57,7 @@ pub(crate) const CHARACTER: Info = Info {
 };
 
 /// Facts about clipping outlines.
-pub(crate) const OUTLINE: Info = Info {
+pub const OUTLINE: Info = Info {
     name: "text-by-outline",
     title: "Outline clipping of text",
     cost: "O(c + n) for c characters and the n points of those that cross a border",

@@ -16,7 +16,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 pub use super::Options;
 
 /// The facts about Wu's lines.
-pub(crate) const WU: Info = Info {
+pub const WU: Info = Info {
     name: "wu",
     title: "Wu's anti-aliased lines",
     authors: "X. Wu",

@@ -96,7 +96,7 @@ impl Step {
 }
 
 /// The facts of the naive form.
-pub(crate) const NAIVE: Info = Info {
+pub const NAIVE: Info = Info {
     name: "naive",
     title: "Seed fill with a stack of pixels",
     authors: "H. Lieberman",
