@@ -182,6 +182,29 @@ pub(crate) fn encode_premultiplied(color: Vec4) -> [u8; 4] {
     encode_rgba8(if color.w >= 1.0 { color } else { unpremultiply(color) })
 }
 
+/// Converts sixteen linear, premultiplied colours, by channel, as [`encode_premultiplied`] does; of each code the first
+/// byte is the lowest.
+#[inline(always)]
+pub(crate) fn encode_premultiplied_x16<S: Simd>(simd: S, colors: &[[f32; 16]; 4]) -> [u32; 16] {
+    let [r, g, b, alpha] = colors;
+    let (red, green) = (f32x16::from_slice(simd, r), f32x16::from_slice(simd, g));
+    let opaque = encode_opaque_x16(simd, [red, green, f32x16::from_slice(simd, b)]);
+    let is_opaque = f32x16::from_slice(simd, alpha).simd_ge(f32x16::splat(simd, 1.0));
+    let (mut codes, mut left): ([u32; 16], _) = (opaque.into(), (!is_opaque).to_bitmask());
+    // Neighbours are often alike: the background, if one colour fills it.
+    let (mut last, mut code) = (Vec4::NAN, 0);
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize % 16;
+        left &= left - 1;
+        let color = Vec4::new(r[lane], g[lane], b[lane], alpha[lane]);
+        if color != last {
+            (last, code) = (color, u32::from_le_bytes(encode_premultiplied(color)));
+        }
+        codes[lane] = code;
+    }
+    codes
+}
+
 /// Converts 8-bit sRGB with 8-bit alpha to linear RGBA.
 #[inline(always)]
 pub fn decode_rgba8(code: [u8; 4]) -> Vec4 {

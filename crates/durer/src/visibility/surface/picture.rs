@@ -115,13 +115,13 @@ impl<'a> Picture<'a> {
         background_rows(self.background, self.height)(y)
     }
 
-    /// Writes row `y` of the colour plane from linear, premultiplied colours.
-    pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
-        let Some(Part { of, start, row }) = self.part(0, y, sums.len()) else { return };
+    /// Writes row `y` of the colour plane, of this width, from linear, premultiplied colours by column.
+    pub fn write_sums(&mut self, y: u32, width: u32, sum: impl Fn(usize) -> Vec4) {
+        let Some(Part { of, start, row }) = self.part(0, y, width as usize) else { return };
         let row = self.framebuffer.color.row_mut(row).get_mut(start..).unwrap_or_default();
         // Neighbours are often alike: the background, if one colour fills it.
         let (mut last, mut code) = (Vec4::ZERO, encode_premultiplied(Vec4::ZERO));
-        for (to, &sum) in row.iter_mut().zip(&sums[of]) {
+        for (to, sum) in row.iter_mut().zip(of.map(sum)) {
             if sum != last {
                 (last, code) = (sum, encode_premultiplied(sum));
             }

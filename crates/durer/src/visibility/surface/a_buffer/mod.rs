@@ -253,7 +253,8 @@ impl Rows<'_> {
                 parts.extend([[middle, x1], [x0, middle]]);
             }
         }
-        picture.write_sums(y as u32, &self.queue.sums);
+        let (queue, width) = (&self.queue, self.input.view.width());
+        picture.write_sums(y as u32, width, |x| queue.sum(x));
     }
 
     /// Collects the fragments of a part of a row; returns whether there was room.
@@ -304,31 +305,33 @@ impl Rows<'_> {
             let filled = pool.next_filled([x, x1]);
             // Pixels without fragments show the background.
             if x < filled {
-                queue.sums[x as usize..filled as usize].fill(Vec4::ZERO + behind);
-                (x..filled).for_each(|x| t.step(|| Step::Background { x, share: 1.0 }));
+                for x in x..filled {
+                    queue.set(x as usize, Vec4::ZERO + behind);
+                    t.step(|| Step::Background { x, share: 1.0 });
+                }
                 x = filled;
                 continue;
             }
             let place = Place { triangles: &input.triangles, table, x, y };
-            queue.sums[x as usize] = Vec4::ZERO;
+            queue.set(x as usize, Vec4::ZERO);
             if let Some(only) = pool.only(x).filter(|f| !f.blended) {
                 // This is the case for most pixels.
                 if only.area > 0.0 {
                     t.step(|| Step::Share { x, item: only.item, share: only.area });
-                    queue.add(simd, lit, point_at(only.item, [x, y], only.area), None);
+                    add_share(simd, queue, (only.item, only.area), [x, y], lit);
                 }
                 pixel.background = 1.0 - only.area;
             } else {
                 // Several fragments: blended ones are composed in depth order, opaque ones share the pixel.
                 pixel.begin(pool, x, table.full(), faces.in_pieces);
                 if pixel.is_blended() {
-                    queue.sums[x as usize] = blended(pixel, &place, lit, t);
+                    queue.set(x as usize, blended(pixel, &place, lit, t));
                 } else {
                     pixel.resolve_opaque(&place);
                     for (f, &share) in pixel.fragments.iter().zip(&pixel.shares) {
                         if share > 0.0 {
                             t.step(|| Step::Share { x, item: f.item, share });
-                            queue.add(simd, lit, point_at(f.item, [x, y], share), None);
+                            add_share(simd, queue, (f.item, share), [x, y], lit);
                         }
                     }
                 }
@@ -336,7 +339,7 @@ impl Rows<'_> {
             // The background gets the rest.
             if pixel.background > 0.0 {
                 t.step(|| Step::Background { x, share: pixel.background });
-                queue.sums[x as usize] += behind * pixel.background;
+                queue.add_color(x as usize, behind, pixel.background);
             }
             x += 1;
         }
@@ -344,9 +347,18 @@ impl Rows<'_> {
     }
 }
 
-/// Returns a point of an item at a pixel of a row, whose sums are numbered by columns.
-fn point_at(item: u32, at: [i32; 2], weight: f32) -> ShadingPoint {
-    ShadingPoint { item, at, pixel: at[0] as u32, weight }
+/// Adds the share of an opaque item in a pixel; the sums of a row are numbered by columns.
+#[inline(always)]
+fn add_share<S: Simd>(
+    simd: S,
+    queue: &mut PointQueue,
+    (item, weight): (u32, f32),
+    at: [i32; 2],
+    lit: &mut Lit<'_>,
+) {
+    let place = at[0] as u32;
+    queue.add_color(place as usize, Vec4::W, weight);
+    queue.add(simd, lit, ShadingPoint { item, at, place, weight }, None);
 }
 
 /// Makes a part of a row; returns whether there was room for its fragments.

@@ -4,11 +4,9 @@
 //! [`sixteen`]. Where a point is, its normal, and the direction to the eye come from [`points`](super::points), the
 //! formulas from [`shade`](crate::shade); a run's [`Way`] decides which of these are needed.
 //!
-//! Two collect points of plain materials until there are enough: [`Batch`] patches of pixels side by side, [`PointQueue`]
-//! points from anywhere, each with its weight in a pixel. [`KnownNormals`] keeps normals from the set-up of small
-//! triangles.
+//! [`PointQueue`] collects the points of plain materials, each with its weight in a pixel, until there are enough to be
+//! lit together. [`KnownNormals`] keeps normals from the set-up of small triangles.
 
-mod batch;
 mod coords;
 mod known;
 mod lighting;
@@ -18,10 +16,9 @@ mod sixteen;
 #[cfg(test)]
 mod tests;
 
-pub use batch::Batch;
 pub use known::KnownNormals;
 pub use lighting::Lighting;
-pub use queue::{PointQueue, ShadingPoint};
+pub use queue::{BlockSums, PointQueue, ShadingPoint};
 pub use shares::MOST_SAMPLES;
 pub use sixteen::opaque;
 

@@ -3,7 +3,6 @@
 use super::*;
 use crate::math::DVec3;
 use crate::scene::{Camera, Light, LightKind, Material, Mesh, Part, Projection, Scene};
-use crate::shade::color::encode_srgb8;
 use crate::shade::environment::Mirrored;
 use crate::shade::studio::Studio;
 use crate::shade::tone::Tone;
@@ -114,8 +113,8 @@ fn of_one<S: Simd>(simd: S, lit: &mut Lit<'_>, item: u32, patch: Patch) -> [[f32
 /// Lights pixels whose samples show several items, as the weighted sum of these; returns the number of patches where
 /// this applied.
 fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
-    let (mut batch, mut found) = (Batch::default(), 0);
-    let (mut codes, mut expected) = ([0; 16 * 256], [0; 16 * 256]);
+    let (mut queue, mut found) = (PointQueue::new(16 * 256), 0);
+    let mut expected = vec![BlockSums::default(); 256];
     for k in 0..256 {
         // At most two items per pixel, whose sum is the same in either order; more per patch.
         let run = numbers.below(2) * TRIANGLES;
@@ -138,27 +137,28 @@ fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> 
                     *sum += color[pixel] * (count as f32 * 0.25);
                 }
             }
-            let [r, g, b] = sum.map(encode_srgb8);
-            expected[16 * k + pixel] = u32::from_le_bytes([r, g, b, 255]);
+            for (channel, sum) in sum.into_iter().enumerate() {
+                expected[k].0[channel][pixel] = sum;
+            }
         }
         let samples = samples.map(|items| u32x16::from_slice(simd, &items));
-        let places = [16 * k, 16 * k + 8];
-        if batch.light_samples(simd, lit, &samples, patch, places, &mut codes) {
+        if queue.light_samples(simd, lit, &samples, (k, patch)) {
             found += 1;
         } else {
-            expected[16 * k..16 * k + 16].fill(0);
+            expected[k] = BlockSums::default();
         }
     }
-    Batch::flush(simd, &mut batch, lit, &mut codes);
-    let differing = (0..codes.len()).find(|&i| codes[i] != expected[i]);
-    assert_eq!(differing, None);
+    PointQueue::flush(simd, &mut queue, lit);
+    for (sums, expected) in queue.sums.iter().zip(&expected) {
+        assert_eq!(bits(&sums.0, &[0; 16]), bits(&expected.0, &[0; 16]));
+    }
     found
 }
 
 /// Lights each pixel of patches in every way; returns the number of settled pixels.
 fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
-    let (mut batch, mut settled) = (Batch::default(), 0);
-    let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);
+    let (mut blocks, mut settled) = (PointQueue::new(16 * 64), 0);
+    let mut expected = vec![BlockSums::default(); 64];
     let mut known = KnownNormals::new(16 * 64, 1);
     for k in 0..64 {
         // The largest number of triangles that a patch may show, of one run or of both.
@@ -194,10 +194,9 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                 for (channel, value) in one_by_one.iter_mut().zip(color) {
                     channel[i] = value;
                 }
-                let code = [0, 1, 2].map(|k| encode_srgb8(color[k]));
                 settled += usize::from(lit.triangle(items[i]).normals.settled);
                 if patch == Patch::block(at) {
-                    expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
+                    (0..3).for_each(|channel| expected[k].0[channel][i] = color[channel]);
                     let normals = lit.triangle(items[i]).normals;
                     // For some, the normals are known; for others, they are known to be missing, or to be those of
                     // another.
@@ -221,25 +220,24 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
             let mut queue = PointQueue::new(16);
             for i in (0..16).filter(|&i| items[i] != NO_ITEM) {
                 let (item, at) = (items[i], patch.pixel(i));
-                queue.begin(i as u32);
-                let point = ShadingPoint { item, at, pixel: i as u32, weight: 1.0 };
+                let point = ShadingPoint { item, at, place: i as u32, weight: 1.0 };
                 let normals = lit.triangle(item).normals;
                 let is_known = normals.settled && !lit.with_positions() && numbers.below(2) == 0;
                 let normal = normals.at(at).extend(0.0).to_array();
                 queue.add(simd, lit, point, is_known.then_some(&normal));
             }
             PointQueue::flush(simd, &mut queue, lit);
-            let sums = queue.pixels.iter().map(|&i| queue.sums[i as usize].to_array());
-            let sums: Bits = sums.map(|[r, g, b, _]| [r, g, b].map(f32::to_bits)).collect();
-            assert_eq!(sums, bits(&one_by_one, &items));
+            assert_eq!(bits(&queue.sums[0].0, &items), bits(&one_by_one, &items));
             if patch == Patch::block(at) {
-                let shown = (shown, &known);
-                batch.light(simd, lit, shown, patch, [16 * k, 16 * k + 8], &mut codes);
+                let known = known.of_patch(simd, [16 * k, 16 * k + 8], shown);
+                blocks.light_block(simd, lit, (shown, known), (k, patch));
             }
         }
     }
-    Batch::flush(simd, &mut batch, lit, &mut codes);
-    assert_eq!(codes, expected);
+    PointQueue::flush(simd, &mut blocks, lit);
+    for (sums, expected) in blocks.sums.iter().zip(&expected) {
+        assert_eq!(bits(&sums.0, &[0; 16]), bits(&expected.0, &[0; 16]));
+    }
     settled
 }
 

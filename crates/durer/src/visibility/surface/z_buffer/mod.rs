@@ -36,7 +36,7 @@ use crate::stopwatch::Stopwatch;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
-use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit, PointQueue};
+use crate::visibility::surface::lit::{KnownNormals, Lighting, Lit, PointQueue};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Marks, Samples};
 use crate::work::Work;
@@ -194,7 +194,6 @@ struct Scratch<'a> {
     center: Vec<SamplePlane>,
     known: KnownNormals,
     blended: Blended,
-    batch: Batch,
     queue: PointQueue,
     codes: Box<Codes>,
     lit: Lit<'a>,
@@ -209,7 +208,6 @@ impl<'a> Scratch<'a> {
             center: Vec::new(),
             known: KnownNormals::new(TILE_PIXELS, offsets.len()),
             blended: Blended::new(offsets),
-            batch: Batch::default(),
             queue: PointQueue::new(TILE_PIXELS),
             codes: Box::new([0; TILE_PIXELS]),
             lit: Lit::new(frame.lighting),
@@ -284,7 +282,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, known, blended, batch, queue, codes, lit, order, .. } = scratch;
+        let Scratch { planes, known, blended, queue, codes, lit, order, .. } = scratch;
         known.clear();
         blended.clear();
         planes.iter_mut().for_each(SamplePlane::clear);
@@ -297,9 +295,9 @@ impl<'a> Frame<'a> {
                 light_blended(simd, blended, nearest_first, planes, area, lit));
         }
         let background = background_rows(self.options.background, self.view.height());
-        let area = Area { tile, size, background: &background };
+        let area = Area::new(area, background);
         dispatch!(self.options.level, simd =>
-            resolve(simd, (planes, known), blended, (batch, queue), lit, &area, codes));
+            resolve(simd, (planes, known), blended, queue, lit, &area, codes));
         for ([x, y], row) in band.rows_of(tile, size) {
             let codes = &codes[(y * TILE + x) as usize..];
             for (to, code) in row.iter_mut().zip(codes) {

@@ -1,46 +1,20 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
-use super::area::{Area, Codes};
-use super::blended::{Blended, resolve_blended};
+use super::area::{Area, Codes, block_at, place_of};
+use super::blended::{Blended, lay_over};
 use super::rasterize::{FragmentTest, one_by_one};
-use super::tile::{SamplePlane, TILE, block_of};
-use crate::math::Vec4;
-use crate::shade::color::{encode_premultiplied, premultiply};
+use super::tile::{SamplePlane, TILE, samples_of_block};
+use crate::shade::color::encode_premultiplied_x16;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::{
-    Batch, KnownNormals, Lit, MOST_SAMPLES, PointQueue, ShadingPoint,
+    BlockSums, KnownNormals, Lit, MOST_SAMPLES, PointQueue, ShadingPoint,
 };
 use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, mask32x16, u32x8, u32x16};
+use fearless_simd::{Simd, f32x16, mask32x16, u32x8, u32x16};
 use fearless_simd_macros::simd;
-
-/// Rows of a tile, and one more: rows are taken in pairs.
-const ROWS: usize = TILE as usize + 1;
-
-/// Background of each row of a tile, linear and encoded, apart: pairs of them would be copied piece by piece.
-struct Behind {
-    linear: [Vec4; ROWS],
-    encoded: [u32; ROWS],
-}
-
-impl Behind {
-    fn new(area: &Area<'_>) -> Self {
-        let (mut linear, mut encoded) = ([Vec4::ZERO; ROWS], [0; ROWS]);
-        for (y, row) in (0..area.size[1]).zip(0..ROWS) {
-            linear[row] = premultiply((area.background)(area.tile[1] + y));
-            let as_above = row > 0 && linear[row] == linear[row - 1];
-            encoded[row] = if as_above {
-                encoded[row - 1]
-            } else {
-                u32::from_le_bytes(encode_premultiplied(linear[row]))
-            };
-        }
-        Self { linear, encoded }
-    }
-}
 
 /// Test that the fragments of masked surfaces pass outside of holes.
 pub struct MaskTest<'t, 'a> {
@@ -64,82 +38,138 @@ impl FragmentTest for MaskTest<'_, '_> {
     }
 }
 
-/// Lights everything that is visible in a tile.
+/// Lights everything that is visible in a tile, and encodes the colours.
 pub fn resolve<S: Simd>(
     simd: S,
     (planes, known): (&[SamplePlane], &KnownNormals),
     blended: &Blended,
-    (batch, queue): (&mut Batch, &mut PointQueue),
+    queue: &mut PointQueue,
     lit: &mut Lit<'_>,
-    area: &Area<'_>,
+    area: &Area,
     codes: &mut Codes,
 ) {
-    resolve_opaque(simd, (planes, known), (batch, queue), lit, area, codes);
+    light_opaque(simd, (planes, known), queue, lit, area);
     if blended.any() {
-        resolve_blended(simd, planes, blended, lit, area, codes);
+        lay_over(simd, planes, blended, lit, area, &mut queue.sums);
     }
+    encode(simd, &queue.sums, area, codes);
 }
 
-/// Resolves all pixels of a tile without blended surfaces.
+/// Lights the opaque surfaces of a tile.
 #[simd]
-fn resolve_opaque<S: Simd>(
+fn light_opaque<S: Simd>(
     simd: S,
     (planes, known): (&[SamplePlane], &KnownNormals),
-    (batch, queue): (&mut Batch, &mut PointQueue),
+    queue: &mut PointQueue,
     lit: &mut Lit<'_>,
-    area: &Area<'_>,
-    codes: &mut Codes,
+    area: &Area,
 ) {
-    let Behind { linear: behind, encoded } = Behind::new(area);
     // Filled again for each block, but not cleared.
     let mut samples = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
     // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
-        let width = 8.min(area.size[0] - x) as usize;
         expect_column(simd, (planes, known), x, area.size[1], lit);
         for y in (0..area.size[1]).step_by(2) {
-            let at = [area.tile[0] + x, area.tile[1] + y];
-            let patch = Patch::block(at);
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
-            let row = y as usize % TILE as usize;
-            let count = samples_of_block(simd, planes, first, &mut samples);
-            // The last row may have no row below; then the pixels written there are not copied.
-            let places = [first, second];
-            let samples = &samples[..count];
-            // If the samples show few items of one plain run, these are lit together, weighted by their samples.
-            let few = samples.first().is_some_and(|first| patch.shows_few(simd, *first));
-            if few
-                && !knows_any(simd, planes, known, places)
-                && batch.light_samples(simd, lit, samples, patch, places, codes)
-            {
-                continue;
-            }
-            // Otherwise pixels whose samples all show one item are lit once; the others go to the queue.
-            let (above, above_differs) = whole_pixels(simd, planes, first);
-            let (below, below_differs) = whole_pixels(simd, planes, second);
-            let differs = [above_differs, below_differs];
-            codes[first..first + 8].fill(encoded[row]);
-            codes[second..second + 8].fill(encoded[row + 1]);
-            let whole = simd.combine_u32x8(above, below);
-            if whole.simd_ne(u32x16::splat(simd, NO_ITEM)).any_true() {
-                batch.light(simd, lit, (whole, known), patch, [first, second], codes);
-            }
-            for i in 0..2.min(area.size[1] - y) as usize {
-                if differs[i] != [0; 8] {
-                    let behind = behind[row + i];
-                    let (differs, at) = (&differs[i][..width], [at[0], at[1] + i as i32]);
-                    let row = Row { planes, known, index: places[i], differs, behind, at };
-                    add_mixed(simd, &row, queue, lit);
-                }
-            }
+            let samples = samples_of_block(simd, planes, first, &mut samples);
+            light_block(simd, (planes, known), samples, [first, second], queue, lit, area);
         }
     }
-    Batch::flush(simd, batch, lit, codes);
     PointQueue::flush(simd, queue, lit);
-    // Sums of the queue are encoded after all of them were lit.
-    for pixel in queue.pixels.drain(..) {
-        codes[pixel as usize] =
-            u32::from_le_bytes(encode_premultiplied(queue.sums[pixel as usize]));
+}
+
+/// Lights the pixels of a block, whose rows begin at these pixels of the tile and show the items of `samples`.
+#[inline(always)]
+fn light_block<S: Simd>(
+    simd: S,
+    (planes, known): (&[SamplePlane], &KnownNormals),
+    samples: &[u32x16<S>],
+    rows: [usize; 2],
+    queue: &mut PointQueue,
+    lit: &mut Lit<'_>,
+    area: &Area,
+) {
+    let [x, y] = [rows[0] as i32 % TILE, rows[0] as i32 / TILE];
+    let block = place_of(x, y) / 16;
+    let patch = Patch::block([area.tile[0] + x, area.tile[1] + y]);
+    let Shown { whole, mixed, background } = shown(simd, samples);
+    begin(simd, &mut queue.sums[block], area.behind(simd, block), background);
+    // If the samples show few items of one plain run, these are lit together, weighted by their samples.
+    if samples.len() > 1
+        && patch.shows_few(simd, samples[0])
+        && !knows_any(simd, planes, known, rows)
+        && queue.light_samples(simd, lit, samples, (block, patch))
+    {
+        return;
+    }
+    // Otherwise pixels whose samples all show one item are lit once, and of the others each item is.
+    if whole.simd_ne(u32x16::splat(simd, NO_ITEM)).any_true() {
+        let known = known.of_patch(simd, rows, whole);
+        queue.light_block(simd, lit, (whole, known), (block, patch));
+    }
+    let [width, height] = [area.size[0] - x, area.size[1] - y];
+    let row = (1 << width.min(8)) - 1;
+    let mut mixed = mixed & if height > 1 { row | row << 8 } else { row };
+    while mixed != 0 {
+        let lane = mixed.trailing_zeros() as usize % 16;
+        mixed &= mixed - 1;
+        let pixel = rows[lane / 8] + lane % 8;
+        let at = (patch.pixel(lane), 16 * block + lane);
+        if let [plane] = planes
+            && let Ok(items) = <&[u32; 4]>::try_from(plane.items(pixel))
+        {
+            add_mixed(simd, items, (pixel, known), at, queue, lit);
+        } else {
+            add_mixed(simd, &items_of(planes, pixel), (pixel, known), at, queue, lit);
+        }
+    }
+}
+
+/// What the pixels of a block show.
+struct Shown<S: Simd> {
+    /// The item that all samples of a pixel show, or [`NO_ITEM`].
+    whole: u32x16<S>,
+    /// Pixels whose samples show several items, or one and the background, as bits.
+    mixed: u64,
+    /// The share of samples that show the background.
+    background: f32x16<S>,
+}
+
+/// Returns what the pixels of a block with these samples show.
+#[inline(always)]
+fn shown<S: Simd>(simd: S, samples: &[u32x16<S>]) -> Shown<S> {
+    let none = u32x16::splat(simd, NO_ITEM);
+    let (zero, share) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0 / samples.len() as f32));
+    let (first, mut differs, mut background) = (samples[0], none ^ none, zero);
+    for items in samples {
+        differs |= first ^ *items;
+        background += items.simd_eq(none).select(share, zero);
+    }
+    let same = differs.simd_eq(none ^ none);
+    Shown { whole: same.select(first, none), mixed: (!same).to_bitmask(), background }
+}
+
+/// Begins the sums of a block with the background's share. All else is opaque, so that alpha is known.
+#[inline(always)]
+fn begin<S: Simd>(simd: S, sums: &mut BlockSums, behind: [f32x16<S>; 4], share: f32x16<S>) {
+    let zero = f32x16::splat(simd, 0.0);
+    let seen = share.simd_gt(zero);
+    for (i, (to, channel)) in sums.0.iter_mut().zip(behind).enumerate() {
+        let of_background = seen.select(channel * share, zero);
+        let of_opaque = if i == 3 { 1.0 - share } else { zero };
+        (of_background + of_opaque).store_slice(to);
+    }
+}
+
+/// Encodes the colours of a tile.
+#[simd]
+fn encode<S: Simd>(simd: S, sums: &[BlockSums], area: &Area, codes: &mut Codes) {
+    for block in area.blocks() {
+        let of_block = encode_premultiplied_x16(simd, &sums[block].0);
+        let [x, y] = block_at(block);
+        for (row, of_row) in [y, y + 1].into_iter().zip(of_block.as_chunks::<8>().0) {
+            codes[(row * TILE + x) as usize..][..8].copy_from_slice(of_row);
+        }
     }
 }
 
@@ -216,38 +246,6 @@ fn first_shown<S: Simd>(simd: S, shown: u32x16<S>, above: u32x16<S>) -> mask32x1
     new & shown.simd_ne(above_left) & shown.simd_ne(above_right)
 }
 
-/// Returns the item that each of eight pixels in a row shows at all samples, or [`NO_ITEM`]; and a number that is 0
-/// only where all samples show the same item.
-#[inline(always)]
-fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> (u32x8<S>, [u32; 8]) {
-    let [first, mut differs] = planes[0].eight(simd, index);
-    for plane in &planes[1..] {
-        let [other, differs_there] = plane.eight(simd, index);
-        differs |= differs_there | (first ^ other);
-    }
-    // All bits of NO_ITEM are set.
-    let same = differs.simd_eq(u32x8::splat(simd, 0));
-    (same.select(first, u32x8::splat(simd, NO_ITEM)), differs.into())
-}
-
-/// Returns the items at the samples of sixteen pixels, eight in each of two rows; and the number of
-/// samples, none if pixels have only one.
-#[inline(always)]
-fn samples_of_block<S: Simd>(
-    simd: S,
-    planes: &[SamplePlane],
-    index: usize,
-    samples: &mut [u32x16<S>; MOST_SAMPLES],
-) -> usize {
-    let fours = planes.iter().filter(|plane| plane.shift > 0);
-    let mut count = 0;
-    for plane in fours {
-        block_of(simd, &plane.item, index, &mut samples[count..count + 4]);
-        count += 4;
-    }
-    count
-}
-
 /// Returns whether the normal of anything that a block shows is known, in rows of pixels that begin at these places.
 #[inline(always)]
 fn knows_any<S: Simd>(
@@ -269,45 +267,14 @@ fn knows_any<S: Simd>(
         })
 }
 
-/// Pixels side by side.
-struct Row<'r> {
-    planes: &'r [SamplePlane],
-    known: &'r KnownNormals,
-    /// The place of the first in the tile, and on the screen.
-    index: usize,
-    at: [i32; 2],
-    /// For each a number that is 0 only where all its samples show the same.
-    differs: &'r [u32],
-    /// Colour behind them, linear and premultiplied.
-    behind: Vec4,
-}
-
-/// Adds the pixels of a row that show several items, or one and the background: each item is lit once and weighted by
-/// its samples.
+/// Adds the items of a pixel that shows several, or one and the background: each is lit once and weighted by its
+/// samples.
 #[inline(always)]
-fn add_mixed<S: Simd>(simd: S, row: &Row<'_>, queue: &mut PointQueue, lit: &mut Lit<'_>) {
-    let Row { planes, index, at: [x, y], differs, .. } = *row;
-    for i in (0..differs.len()).filter(|&i| differs[i] != 0) {
-        let (pixel, at) = (index + i, [x + i as i32, y]);
-        queue.begin(pixel as u32);
-        if let [plane] = planes
-            && let Ok(items) = <&[u32; 4]>::try_from(plane.items(pixel))
-        {
-            add_shares(simd, items, (pixel, at), row, queue, lit);
-        } else {
-            let (items, _) = sample_items(planes, pixel);
-            add_shares(simd, &items, (pixel, at), row, queue, lit);
-        }
-    }
-}
-
-/// Adds the share of each item, and of the background, in the samples of a pixel.
-#[inline(always)]
-fn add_shares<S: Simd, const N: usize>(
+fn add_mixed<S: Simd, const N: usize>(
     simd: S,
     items: &[u32; N],
-    (pixel, at): (usize, [i32; 2]),
-    row: &Row<'_>,
+    (pixel, known): (usize, &KnownNormals),
+    (at, place): ([i32; 2], usize),
     queue: &mut PointQueue,
     lit: &mut Lit<'_>,
 ) {
@@ -320,25 +287,21 @@ fn add_shares<S: Simd, const N: usize>(
             same |= u32::from(*other == item) << i;
         }
         left &= !same;
-        let weight = same.count_ones() as f32 * (1.0 / N as f32);
-        if item == NO_ITEM {
-            queue.add_color(pixel as u32, row.behind, weight);
-        } else {
-            let normal = row.known.of_sample(N * pixel + sample, item);
-            queue.add(simd, lit, ShadingPoint { item, at, pixel: pixel as u32, weight }, normal);
+        if item != NO_ITEM {
+            let weight = same.count_ones() as f32 * (1.0 / N as f32);
+            let normal = known.of_sample(N * pixel + sample, item);
+            let place = place as u32;
+            queue.add(simd, lit, ShadingPoint { item, at, place, weight }, normal);
         }
     }
 }
 
-/// Returns the items at all samples of a pixel, and how many samples there are.
-#[inline(always)]
-fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
-    let (mut items, mut count) = ([NO_ITEM; MOST_SAMPLES], 0);
+/// Returns the items at sixteen samples of a pixel.
+fn items_of(planes: &[SamplePlane], pixel: usize) -> [u32; MOST_SAMPLES] {
+    let mut items = [NO_ITEM; MOST_SAMPLES];
     for plane in planes {
-        for &item in plane.items(pixel) {
-            items[count] = item;
-            count += 1;
-        }
+        let of_plane = plane.items(pixel);
+        items[plane.first..plane.first + of_plane.len()].copy_from_slice(of_plane);
     }
-    (items, count)
+    items
 }

@@ -127,18 +127,24 @@ impl SamplePlane {
     pub fn depth(&self, pixel: usize) -> f32 {
         f32::from_bits(self.depth[pixel << self.shift] as u32)
     }
+}
 
-    /// Returns the item at the first sample of each of eight pixels in a row, and a number for each
-    /// that is 0 only where all samples of the pixel show it.
-    #[inline(always)]
-    pub fn eight<S: Simd>(&self, simd: S, pixel: usize) -> [u32x8<S>; 2] {
-        if self.shift == 0 {
-            let items = u32x8::from_slice(simd, &self.item[pixel..pixel + 8]);
-            return [items, u32x8::splat(simd, 0)];
-        }
-        let [first, second, third, fourth] = four_of_eight(simd, &self.item, pixel);
-        [first, (first ^ second) | (first ^ third) | (first ^ fourth)]
+/// Returns the items at the samples of a block, by sample: of eight pixels in a row from the given one on, and of the
+/// eight below them. `room` is overwritten.
+#[inline(always)]
+pub fn samples_of_block<'r, S: Simd>(
+    simd: S,
+    planes: &[SamplePlane],
+    pixel: usize,
+    room: &'r mut [u32x16<S>],
+) -> &'r [u32x16<S>] {
+    let mut count = 0;
+    for plane in planes {
+        let of_plane = 1 << plane.shift;
+        block_of(simd, &plane.item, pixel, &mut room[count..count + of_plane]);
+        count += of_plane;
     }
+    &room[..count]
 }
 
 /// Sets `samples` to the items, by sample, of a block of a plane: of eight pixels in a row from the given one on, and

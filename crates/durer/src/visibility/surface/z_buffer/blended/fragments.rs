@@ -1,9 +1,9 @@
 //! FragmentList of a tile's blended triangles that overlap in both area and depth range, sorted pixel by pixel.
 
+use super::super::area::{LANES, place_of};
 use super::super::rasterize::{FragmentTest, one_by_one, rasterize};
 use super::super::tile::{SamplePlane, TILE_PIXELS};
 use super::layers::LitLayers;
-use super::{LANES, place_of};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::setup::ScreenTriangle;

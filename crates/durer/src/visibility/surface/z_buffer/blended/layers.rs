@@ -1,7 +1,7 @@
 //! The lit layers of a tile's blended surfaces, block by block.
 
+use super::super::area::{BLOCKS, LANES, block_at, place_of};
 use super::super::tile::{TILE, TILE_PIXELS};
-use super::{BLOCKS, LANES, block_at, place_of};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::lit::{Lit, opaque};

@@ -10,47 +10,23 @@ mod sheet;
 #[cfg(test)]
 mod tests;
 
-use super::area::{Area, Codes};
+use super::area::{Area, BLOCKS, LANES, block_at};
 use super::rasterize::rasterize;
-use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
-use crate::math::Vec4;
+use super::tile::{SamplePlane, TILE, TILE_PIXELS, samples_of_block};
 use crate::raster::fixed::HALF_PIXEL;
-use crate::shade::color::{encode_opaque_x16, encode_premultiplied, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Lit, MOST_SAMPLES, opaque};
+use crate::visibility::surface::lit::{BlockSums, Lit, MOST_SAMPLES};
 use crate::visibility::surface::points::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 use fearless_simd_macros::simd;
 use fragments::{FragmentList, light_sorted};
 use layers::LitLayers;
 use sheet::Sheet;
 
-/// Pixels of a block: eight in a row, and the eight below them.
-const LANES: usize = 16;
-
-/// Blocks of a tile.
-const BLOCKS: usize = TILE_PIXELS / LANES;
-
-/// Blocks beside each other.
-const BLOCKS_ACROSS: usize = TILE as usize / 8;
-
 /// A sheet with more blocks is likely to be covered by the next large triangle.
 const MANY_BLOCKS: usize = BLOCKS / 2;
-
-/// Returns the upper left pixel of a block, tile-local.
-#[inline(always)]
-fn block_at(block: usize) -> [i32; 2] {
-    [(block % BLOCKS_ACROSS * 8) as i32, (block / BLOCKS_ACROSS * 2) as i32]
-}
-
-/// Returns the place of a tile-local pixel: its block times 16 and its lane.
-#[inline(always)]
-fn place_of(x: i32, y: i32) -> usize {
-    let block = y / 2 * (TILE / 8) + x / 8;
-    (block * LANES as i32 + y % 2 * 8 + x % 8) as usize % TILE_PIXELS
-}
 
 /// The blended surfaces of a tile.
 pub struct Blended {
@@ -178,15 +154,16 @@ fn is_large(t: &ScreenTriangle, [tile, size]: [[i32; 2]; 2]) -> bool {
     })
 }
 
-/// Composes the lit surfaces over the background, block by block.
+/// Lays the lit surfaces over the opaque ones and the background, and puts the colours of the pixels where there are any
+/// into `sums`.
 #[simd]
-pub fn resolve_blended<S: Simd>(
+pub fn lay_over<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
     blended: &Blended,
     lit: &mut Lit<'_>,
-    area: &Area<'_>,
-    codes: &mut Codes,
+    area: &Area,
+    sums: &mut [BlockSums],
 ) {
     let layers = &blended.layers;
     let mut under = [[f32x16::splat(simd, 0.0); 4]; MOST_SAMPLES];
@@ -199,31 +176,17 @@ pub fn resolve_blended<S: Simd>(
         behind_block(simd, planes, block, lit, area, under);
         layers.lay_over(simd, block, under);
         // The pixel is the mean of its samples.
-        let mut sums = [f32x16::splat(simd, 0.0); 4];
+        let mut means = [f32x16::splat(simd, 0.0); 4];
         for colors in under.iter() {
-            for (sum, color) in sums.iter_mut().zip(colors) {
+            for (sum, color) in means.iter_mut().zip(colors) {
                 *sum += *color;
             }
         }
         // The number of samples is a power of two, so this is exact.
-        let mut mean = [[0.0; LANES]; 4];
-        for (to, sum) in mean.iter_mut().zip(sums) {
-            (sum * (1.0 / layers.count as f32)).store_slice(to);
-        }
-        // Opaque pixels are encoded together, the others one by one.
-        let opaque: [u32; LANES] = encode_opaque_x16(simd, opaque(simd, &mean)).into();
-        let [x, y] = block_at(block);
-        for lane in (0..LANES).filter(|lane| touched >> lane & 1 == 1) {
-            let [r, g, b, a] = &mean;
-            let code = if a[lane] >= 1.0 {
-                opaque[lane]
-            } else {
-                u32::from_le_bytes(encode_premultiplied(Vec4::new(
-                    r[lane], g[lane], b[lane], a[lane],
-                )))
-            };
-            let (x, y) = (x as usize + lane % 8, y as usize + lane / 8);
-            codes[y * TILE as usize + x] = code;
+        let share = 1.0 / layers.count as f32;
+        let touched = mask32x16::from_bitmask(simd, touched.into());
+        for (to, mean) in sums[block].0.iter_mut().zip(means) {
+            touched.select(mean * share, f32x16::from_slice(simd, to)).store_slice(to);
         }
     }
 }
@@ -235,34 +198,22 @@ fn behind_block<S: Simd>(
     planes: &[SamplePlane],
     block: usize,
     lit: &mut Lit<'_>,
-    area: &Area<'_>,
+    area: &Area,
     colors: &mut [[f32x16<S>; 4]],
 ) {
     let [x, y] = block_at(block);
-    let at = [area.tile[0] + x, area.tile[1] + y];
-    let patch = Patch::block(at);
-    // The last row may have no row below.
-    let below = (y + 1).min(area.size[1] - 1) + area.tile[1];
-    let above = premultiply((area.background)(at[1])).to_array();
-    let below = premultiply((area.background)(below)).to_array();
-    let mut behind = [f32x16::splat(simd, 0.0); 4];
-    for (i, behind) in behind.iter_mut().enumerate() {
-        *behind = simd.combine_f32x8(simd.splat_f32x8(above[i]), simd.splat_f32x8(below[i]));
-    }
-    let none = u32x16::splat(simd, NO_ITEM);
+    let patch = Patch::block([area.tile[0] + x, area.tile[1] + y]);
+    let (none, behind) = (u32x16::splat(simd, NO_ITEM), area.behind(simd, block));
     let mut shown = [none; MOST_SAMPLES];
     // The items at each sample of the block.
-    for plane in planes {
-        let samples = &mut shown[plane.first..plane.first + (1 << plane.shift)];
-        block_of(simd, &plane.item, (y * TILE + x) as usize, samples);
-    }
+    let shown = samples_of_block(simd, planes, (y * TILE + x) as usize, &mut shown);
     // Samples that show the same item at the same pixel as an earlier one copy its colour.
     for i in 0..colors.len() {
         colors[i] = behind;
         let items = shown[i];
         let mut left = items;
         let (earlier, here) = colors.split_at_mut(i);
-        for (earlier, shown) in earlier.iter().zip(&shown) {
+        for (earlier, shown) in earlier.iter().zip(shown) {
             let same = items.simd_eq(*shown);
             left = same.select(none, left);
             for (to, from) in here[0].iter_mut().zip(earlier) {

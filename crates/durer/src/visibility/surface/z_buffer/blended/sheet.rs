@@ -1,8 +1,8 @@
 //! Blended triangles of a tile that do not overlap, whose colours need no sorting.
 
+use super::super::area::{BLOCKS, block_at};
 use super::super::rasterize::FragmentTest;
 use super::super::tile::{TILE, TILE_PIXELS, block_of};
-use super::{BLOCKS, block_at};
 use crate::simd::lanes;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::setup::ScreenTriangle;
