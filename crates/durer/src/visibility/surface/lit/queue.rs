@@ -118,8 +118,8 @@ impl PointQueue {
         }
     }
 
-    /// Lights the pixels of a block that show an item, at least one, now or at the latest by [`Self::flush`]; some of
-    /// their normals may be known.
+    /// Lights the pixels of a block that show an item, at least one, now or at the latest by [`Self::flush`]. Some of
+    /// their normals may be known, if these are settled and all that lighting needs.
     #[inline(always)]
     pub fn light_block<S: Simd>(
         &mut self,

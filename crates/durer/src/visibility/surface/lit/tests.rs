@@ -230,6 +230,7 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
             assert_eq!(bits(&queue.sums[0].0, &items), bits(&one_by_one, &items));
             if patch == Patch::block(at) {
                 let known = known.of_patch(simd, [16 * k, 16 * k + 8], shown);
+                let known = known.filter(|_| !lit.with_positions());
                 blocks.light_block(simd, lit, (shown, known), (k, patch));
             }
         }

@@ -2,7 +2,7 @@ use super::super::bins::{Binned, Source};
 use super::super::front_to_back::FrontToBack;
 use super::super::rasterize::AllPass;
 use super::*;
-use crate::math::{DVec3, Vec3};
+use crate::math::{DVec3, Vec3, Vec4};
 use crate::scene::{AlphaMode, Camera, Material, Mesh, Part, Projection, Scene};
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::simd::{dispatch, levels};
