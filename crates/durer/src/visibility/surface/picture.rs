@@ -5,7 +5,9 @@
 //! colours. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
-use crate::shade::color::{encode_opaque_x16, encode_premultiplied, encode_rgba8};
+use crate::shade::color::{
+    encode_opaque_x16, encode_premultiplied, encode_premultiplied_x16, encode_rgba8,
+};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level, dispatch};
 use crate::target::{Framebuffer, NO_ITEM};
@@ -13,7 +15,7 @@ use crate::view::window::PixelRect;
 use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::SurfaceInput;
-use crate::visibility::surface::lit::{Lighting, Lit, opaque};
+use crate::visibility::surface::lit::{BlockSums, Lighting, Lit, opaque};
 use crate::visibility::surface::points::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
@@ -115,18 +117,11 @@ impl<'a> Picture<'a> {
         background_rows(self.background, self.height)(y)
     }
 
-    /// Writes row `y` of the colour plane, of this width, from linear, premultiplied colours by column.
-    pub fn write_sums(&mut self, y: u32, width: u32, sum: impl Fn(usize) -> Vec4) {
-        let Some(Part { of, start, row }) = self.part(0, y, width as usize) else { return };
+    /// Writes row `y` of the colour plane from the sums of its pixels, sixteen after sixteen.
+    pub fn write_sums(&mut self, y: u32, sums: &[BlockSums]) {
+        let Some(Part { of, start, row }) = self.part(0, y, 16 * sums.len()) else { return };
         let row = self.framebuffer.color.row_mut(row).get_mut(start..).unwrap_or_default();
-        // Neighbours are often alike: the background, if one colour fills it.
-        let (mut last, mut code) = (Vec4::ZERO, encode_premultiplied(Vec4::ZERO));
-        for (to, sum) in row.iter_mut().zip(of.map(sum)) {
-            if sum != last {
-                (last, code) = (sum, encode_premultiplied(sum));
-            }
-            *to = code;
-        }
+        dispatch!(self.level, simd => encode_row(simd, sums, of.start, row));
     }
 
     /// Writes one pixel of the colour plane from a linear, premultiplied colour.
@@ -188,6 +183,23 @@ struct Part {
     start: usize,
     /// Row in the framebuffer.
     row: u32,
+}
+
+/// Encodes the pixels of a row from one on.
+#[simd]
+fn encode_row<S: Simd>(simd: S, sums: &[BlockSums], first: usize, out: &mut [[u8; 4]]) {
+    let (mut lane, mut rest) = (first % 16, out);
+    for sums in &sums[first / 16..] {
+        if rest.is_empty() {
+            return;
+        }
+        let codes = &encode_premultiplied_x16(simd, &sums.0)[lane..];
+        let (part, others) = rest.split_at_mut(codes.len().min(rest.len()));
+        for (to, code) in part.iter_mut().zip(codes) {
+            *to = code.to_le_bytes();
+        }
+        (lane, rest) = (0, others);
+    }
 }
 
 /// Lights the pixels of a row, sixteen at a time.

@@ -241,6 +241,7 @@ impl Rows<'_> {
     /// Makes a row, in as few parts as the limit of fragments allows.
     fn row(&mut self, y: i32, picture: &mut Picture<'_>, t: &mut impl Tracer<Step>) {
         let behind = premultiply(picture.behind(y));
+        self.queue.fill(behind);
         let window = self.input.view.window();
         let mut parts = vec![[window.x0(), window.x1()]];
         while let Some([x0, x1]) = parts.pop() {
@@ -253,8 +254,7 @@ impl Rows<'_> {
                 parts.extend([[middle, x1], [x0, middle]]);
             }
         }
-        let (queue, width) = (&self.queue, self.input.view.width());
-        picture.write_sums(y as u32, width, |x| queue.sum(x));
+        picture.write_sums(y as u32, &self.queue.sums);
     }
 
     /// Collects the fragments of a part of a row; returns whether there was room.
@@ -303,22 +303,19 @@ impl Rows<'_> {
         let mut x = x0;
         while x < x1 {
             let filled = pool.next_filled([x, x1]);
-            // Pixels without fragments show the background.
+            // Pixels without fragments keep the background.
             if x < filled {
-                for x in x..filled {
-                    queue.set(x as usize, Vec4::ZERO + behind);
-                    t.step(|| Step::Background { x, share: 1.0 });
-                }
+                (x..filled).for_each(|x| t.step(|| Step::Background { x, share: 1.0 }));
                 x = filled;
                 continue;
             }
             let place = Place { triangles: &input.triangles, table, x, y };
-            queue.set(x as usize, Vec4::ZERO);
             if let Some(only) = pool.only(x).filter(|f| !f.blended) {
                 // This is the case for most pixels.
+                queue.set(x as usize, Vec4::W * only.area);
                 if only.area > 0.0 {
                     t.step(|| Step::Share { x, item: only.item, share: only.area });
-                    add_share(simd, queue, (only.item, only.area), [x, y], lit);
+                    queue.add(simd, lit, point_at(only.item, [x, y], only.area), None);
                 }
                 pixel.background = 1.0 - only.area;
             } else {
@@ -328,10 +325,11 @@ impl Rows<'_> {
                     queue.set(x as usize, blended(pixel, &place, lit, t));
                 } else {
                     pixel.resolve_opaque(&place);
+                    queue.set(x as usize, Vec4::W * pixel.shares.iter().sum::<f32>());
                     for (f, &share) in pixel.fragments.iter().zip(&pixel.shares) {
                         if share > 0.0 {
                             t.step(|| Step::Share { x, item: f.item, share });
-                            add_share(simd, queue, (f.item, share), [x, y], lit);
+                            queue.add(simd, lit, point_at(f.item, [x, y], share), None);
                         }
                     }
                 }
@@ -347,18 +345,9 @@ impl Rows<'_> {
     }
 }
 
-/// Adds the share of an opaque item in a pixel; the sums of a row are numbered by columns.
-#[inline(always)]
-fn add_share<S: Simd>(
-    simd: S,
-    queue: &mut PointQueue,
-    (item, weight): (u32, f32),
-    at: [i32; 2],
-    lit: &mut Lit<'_>,
-) {
-    let place = at[0] as u32;
-    queue.add_color(place as usize, Vec4::W, weight);
-    queue.add(simd, lit, ShadingPoint { item, at, place, weight }, None);
+/// Returns a point of an item at a pixel of a row, whose sums are numbered by columns.
+fn point_at(item: u32, at: [i32; 2], weight: f32) -> ShadingPoint {
+    ShadingPoint { item, at, place: at[0] as u32, weight }
 }
 
 /// Makes a part of a row; returns whether there was room for its fragments.

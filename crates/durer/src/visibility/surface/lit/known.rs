@@ -5,9 +5,9 @@
 
 use crate::shade::lane::Vec3Lane;
 use crate::target::NO_ITEM;
-use crate::visibility::surface::gather::{Gathered, columns};
+use crate::visibility::surface::gather::columns;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4, f32x16, i32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16};
+use fearless_simd::{Simd, f32x16, i32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16};
 
 /// Normals at the samples of a tile, of the side that is seen, settled, of any length.
 pub struct KnownNormals {
@@ -107,8 +107,7 @@ impl KnownNormals {
         shown.simd_eq(u32x8::from_slice(simd, &self.items[pixel..pixel + 8]))
     }
 
-    /// Returns the pixels, among twice eight that show items in all or part of their samples, whose normals
-    /// are known; and the normals.
+    /// Returns the pixels of one sample, among twice eight that show items, whose normals are known; and the normals.
     #[inline(always)]
     pub fn of_patch<S: Simd>(
         &self,
@@ -116,11 +115,8 @@ impl KnownNormals {
         [first, second]: [usize; 2],
         shown: u32x16<S>,
     ) -> Option<Known<S>> {
-        if !self.any {
+        if !self.any || self.samples > 1 {
             return None;
-        }
-        if self.samples > 1 {
-            return self.of_first_samples(simd, [first, second], shown);
         }
         let above = u32x8::from_slice(simd, &self.items[first..first + 8]);
         let below = u32x8::from_slice(simd, &self.items[second..second + 8]);
@@ -132,26 +128,5 @@ impl KnownNormals {
         let (above, below) = (&self.normals[first..first + 8], &self.normals[second..second + 8]);
         let [x, y, z, _] = columns(simd, above.as_flattened(), below.as_flattened());
         Some((known, Vec3Lane::new(x, y, z)))
-    }
-
-    /// Returns the normals as [`Self::of_patch`] does, by the first samples of the pixels.
-    #[inline(always)]
-    fn of_first_samples<S: Simd>(
-        &self,
-        simd: S,
-        places: [usize; 2],
-        shown: u32x16<S>,
-    ) -> Option<Known<S>> {
-        let (shown, mut normals): ([u32; 16], _) = (shown.into(), Gathered::default());
-        let mut known = [0; 16];
-        for (lane, &item) in shown.iter().enumerate().filter(|(_, item)| **item != NO_ITEM) {
-            let pixel = places[lane / 8] + lane % 8;
-            if let Some(normal) = self.of_sample(self.samples * pixel, item) {
-                normals.set(lane, f32x4::from_slice(simd, normal));
-                known[lane] = 1;
-            }
-        }
-        let known = u32x16::from_slice(simd, &known).simd_ne(u32x16::splat(simd, 0));
-        known.any_true().then(|| (known, normals.vectors(simd)))
     }
 }

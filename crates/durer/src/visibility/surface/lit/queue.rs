@@ -96,12 +96,13 @@ impl PointQueue {
         Self { sums, waiting: Vec::new(), singles: Singles::default() }
     }
 
-    /// Returns the sum of a pixel.
-    pub fn sum(&self, place: usize) -> Vec4 {
-        Vec4::from_array(self.sums[place / LANES].0.map(|channel| channel[place % LANES]))
+    /// Sets the sums of all pixels.
+    pub fn fill(&mut self, color: Vec4) {
+        self.sums.fill(BlockSums(color.to_array().map(|channel| [channel; LANES])));
     }
 
     /// Sets the sum of a pixel.
+    #[inline(always)]
     pub fn set(&mut self, place: usize, color: Vec4) {
         let sums = &mut self.sums[place / LANES].0;
         for (sum, value) in sums.iter_mut().zip(color.to_array()) {

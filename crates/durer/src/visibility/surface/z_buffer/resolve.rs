@@ -72,7 +72,7 @@ fn light_opaque<S: Simd>(
         for y in (0..area.size[1]).step_by(2) {
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let samples = samples_of_block(simd, planes, first, &mut samples);
-            light_block(simd, (planes, known), samples, [first, second], queue, lit, area);
+            resolve_block(simd, (planes, known), samples, [first, second], queue, lit, area);
         }
     }
     PointQueue::flush(simd, queue, lit);
@@ -80,7 +80,7 @@ fn light_opaque<S: Simd>(
 
 /// Lights the pixels of a block, whose rows begin at these pixels of the tile and show the items of `samples`.
 #[inline(always)]
-fn light_block<S: Simd>(
+fn resolve_block<S: Simd>(
     simd: S,
     (planes, known): (&[SamplePlane], &KnownNormals),
     samples: &[u32x16<S>],
@@ -94,22 +94,29 @@ fn light_block<S: Simd>(
     let patch = Patch::block([area.tile[0] + x, area.tile[1] + y]);
     let Shown { whole, mixed, background } = shown(simd, samples);
     begin(simd, &mut queue.sums[block], area.behind(simd, block), background);
+    let several = samples.len() > 1;
+    let knows = several && knows_any(simd, planes, known, rows);
     // If the samples show few items of one plain run, these are lit together, weighted by their samples.
-    if samples.len() > 1
+    if several
+        && !knows
         && patch.shows_few(simd, samples[0])
-        && !knows_any(simd, planes, known, rows)
         && queue.light_samples(simd, lit, samples, (block, patch))
     {
         return;
     }
-    // Otherwise pixels whose samples all show one item are lit once, and of the others each item is.
-    if whole.simd_ne(u32x16::splat(simd, NO_ITEM)).any_true() {
+    // Otherwise pixels whose samples all show one item are lit once, and of the others each item is. Normals that are
+    // known at samples are added one by one.
+    let full = whole.simd_ne(u32x16::splat(simd, NO_ITEM)).to_bitmask();
+    let mut mixed = mixed;
+    if knows {
+        mixed |= full;
+    } else if full != 0 {
         let known = known.of_patch(simd, rows, whole);
         queue.light_block(simd, lit, (whole, known), (block, patch));
     }
     let [width, height] = [area.size[0] - x, area.size[1] - y];
     let row = (1 << width.min(8)) - 1;
-    let mut mixed = mixed & if height > 1 { row | row << 8 } else { row };
+    mixed &= if height > 1 { row | row << 8 } else { row };
     while mixed != 0 {
         let lane = mixed.trailing_zeros() as usize % 16;
         mixed &= mixed - 1;

@@ -1,9 +1,10 @@
-//! FragmentList of a tile's blended triangles that overlap in both area and depth range, sorted pixel by pixel.
+//! The fragments of a tile's blended triangles, sorted pixel by pixel.
 
 use super::super::area::{LANES, place_of};
-use super::super::rasterize::{FragmentTest, one_by_one, rasterize};
-use super::super::tile::{SamplePlane, TILE_PIXELS};
+use super::super::rasterize::{FragmentTest, rasterize};
+use super::super::tile::{MOST_LANES, SamplePlane, TILE_PIXELS};
 use super::layers::LitLayers;
+use crate::simd::lanes;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -13,70 +14,19 @@ use fearless_simd_macros::simd;
 
 /// A fragment of a blended surface.
 #[derive(Debug, Clone, Copy, Default)]
-struct Fragment {
+pub struct Fragment {
     /// The place of its pixel: block by block.
     place: u32,
     item: u32,
-    /// Depth at the first covered sample.
+    /// The least depth at its samples.
     depth: f32,
     /// Bit i: sample i is covered and not hidden.
     samples: u32,
 }
 
-/// Number of fragments collected before those known to be nearest are lit.
-const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
-
-/// Number of triangles between tests whether surfaces behind are still visible at any pixel.
-const AT_ONCE: usize = 8;
-
-/// Lights the first triangles, at least `at_least`, and those whose depths overlap theirs, sorted pixel by pixel;
-/// returns their number.
-#[inline(always)]
-pub fn light_sorted<S: Simd>(
-    simd: S,
-    fragments: &mut FragmentList,
-    (triangles, at_least): (&[&ScreenTriangle], usize),
-    layers: &mut LitLayers,
-    planes: &mut [SamplePlane],
-    area: [[i32; 2]; 2],
-    lit: &mut Lit<'_>,
-) -> usize {
-    fragments.list.clear();
-    fragments.tile = area[0];
-    let (mut taken, mut farthest) = (0, f32::NEG_INFINITY);
-    let mut limit = MANY;
-    while taken < triangles.len() && !layers.hide_all(area[1]) {
-        // The next triangles, as far as their depths overlap those collected.
-        let mut part = 0;
-        for t in triangles[taken..].iter().take(AT_ONCE) {
-            if t.depth_min > farthest && taken + part >= at_least {
-                break;
-            }
-            farthest = farthest.max(t.depth_max);
-            part += 1;
-        }
-        if part == 0 {
-            break;
-        }
-        let these = triangles[taken..taken + part].iter().copied();
-        let mut open = Open { fragments, closed: &layers.closed };
-        rasterize(simd, planes, area, these, Some(&mut open));
-        taken += part;
-        // If there are many, those nearer than all triangles to come are lit now.
-        if let Some(next) = triangles.get(taken)
-            && fragments.list.len() >= limit
-        {
-            light_nearer(simd, fragments, next.depth_min, layers, lit);
-            limit = fragments.list.len() * 2 + MANY;
-        }
-    }
-    light_nearer(simd, fragments, f32::INFINITY, layers, lit);
-    taken
-}
-
-/// FragmentList that nothing opaque hides, before sorting.
+/// Fragments that nothing opaque hides, before sorting.
 pub struct FragmentList {
-    list: Vec<Fragment>,
+    pub list: Vec<Fragment>,
     /// Room for sorting.
     by_place: Vec<Fragment>,
     offsets: &'static [[i32; 2]],
@@ -89,10 +39,30 @@ impl FragmentList {
         Self { list: Vec::new(), by_place: Vec::new(), offsets, tile: [0; 2] }
     }
 
+    /// Begins a tile at this place, without fragments.
+    pub fn open(&mut self, tile: [i32; 2]) {
+        self.list.clear();
+        self.tile = tile;
+    }
+
+    /// Adds the fragments of a triangle, except where `layers` hide them.
+    #[inline(always)]
+    pub fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        t: &ScreenTriangle,
+        layers: &LitLayers,
+        planes: &mut [SamplePlane],
+        area: [[i32; 2]; 2],
+    ) {
+        let mut open = Open { fragments: self, closed: &layers.closed };
+        rasterize(simd, planes, area, std::iter::once(t), Some(&mut open));
+    }
+
     /// Sorts the fragments of each pixel, near ones first; at equal depths the lower item, which is visible, comes
     /// first. Most of them are already in this order.
     fn sort(&mut self) {
-        // FragmentList are collected triangle by triangle, so fragments of one item at one pixel are consecutive.
+        // Fragments are collected triangle by triangle, so fragments of one item at one pixel are consecutive.
         let mut next = [0; TILE_PIXELS + 1];
         for f in &self.list {
             next[f.place as usize + 1] += 1;
@@ -107,8 +77,8 @@ impl FragmentList {
             *slot += 1;
         }
         std::mem::swap(&mut self.list, &mut self.by_place);
-        // The samples of one item at one pixel become one fragment. Even with one sample there may be several entries,
-        // because the rasterizer may visit a pixel of a triangle twice.
+        // The samples of one item at one pixel become one fragment: there may be several, because they may be in several
+        // planes, and the rasterizer may visit a pixel of a triangle twice.
         self.list.dedup_by(|next, kept| {
             let same = (next.place, next.item) == (kept.place, kept.item);
             if same {
@@ -131,39 +101,56 @@ struct Open<'a> {
 }
 
 impl FragmentTest for Open<'_> {
-    /// Records the fragments and writes nothing.
+    /// Records the fragments and lets nothing be written.
+    #[inline(always)]
     fn pass<S: Simd>(
         &mut self,
         simd: S,
         write: S::i32s,
         t: &ScreenTriangle,
-        at: [i32; 2],
+        [x, y]: [i32; 2],
         (first, shift): (usize, u32),
     ) -> S::i32s {
-        one_by_one(simd, write, at, shift, |x, y, sample| {
-            let place = place_of(x, y);
-            if self.closed[place] != 0 {
-                return false;
+        let mut written = [0; MOST_LANES];
+        let written = &mut written[..lanes::<S>()];
+        write.store_slice(written);
+        for (of_pixel, x) in written.chunks(1 << shift).zip(x..) {
+            let mut samples = 0;
+            for (i, sample) in of_pixel.iter().enumerate() {
+                samples |= u32::from(*sample != 0) << (first + i);
             }
-            let (origin, tile) = (t.origin(), self.fragments.tile);
-            let sample = first + sample;
-            let [ox, oy] = self.fragments.offsets[sample].map(|o| o as f32 / 256.0);
-            let dx = (tile[0] + x - origin[0]) as f32 + ox;
-            let dy = (tile[1] + y - origin[1]) as f32 + oy;
-            self.fragments.list.push(Fragment {
-                place: place as u32,
-                item: t.item,
-                depth: t.depth_at(dx, dy),
-                samples: 1 << sample,
-            });
-            false
-        })
+            if samples != 0 {
+                self.add(t, [x, y], samples);
+            }
+        }
+        S::i32s::splat(simd, 0)
+    }
+}
+
+impl Open<'_> {
+    /// Adds the fragment of a triangle at a pixel if the pixel is open.
+    #[inline(always)]
+    fn add(&mut self, t: &ScreenTriangle, [x, y]: [i32; 2], samples: u32) {
+        let place = place_of(x, y);
+        if self.closed[place] != 0 {
+            return;
+        }
+        let (origin, tile) = (t.origin(), self.fragments.tile);
+        let [dx, dy] = [(tile[0] + x - origin[0]) as f32, (tile[1] + y - origin[1]) as f32];
+        let (mut depth, mut left) = (f32::INFINITY, samples);
+        while left != 0 {
+            let [ox, oy] = self.fragments.offsets[left.trailing_zeros() as usize];
+            left &= left - 1;
+            depth = depth.min(t.depth_at(dx + ox as f32 / 256.0, dy + oy as f32 / 256.0));
+        }
+        let (place, item) = (place as u32, t.item);
+        self.fragments.list.push(Fragment { place, item, depth, samples });
     }
 }
 
 /// Lights the fragments nearer than `bound`, a lower bound of the depths still to come.
 #[simd]
-fn light_nearer<S: Simd>(
+pub fn light_nearer<S: Simd>(
     simd: S,
     fragments: &mut FragmentList,
     bound: f32,

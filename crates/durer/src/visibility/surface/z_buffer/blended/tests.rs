@@ -1,9 +1,11 @@
+use super::super::area::{BLOCKS, place_of};
 use super::super::bins::{Binned, Source};
 use super::super::front_to_back::FrontToBack;
-use super::super::rasterize::AllPass;
+use super::super::rasterize::{AllPass, FragmentTest, one_by_one};
 use super::*;
 use crate::math::{DVec3, Vec3, Vec4};
 use crate::scene::{AlphaMode, Camera, Material, Mesh, Part, Projection, Scene};
+use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::simd::{dispatch, levels};
 use crate::testing::{camera, scene_of};
@@ -12,6 +14,7 @@ use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Coverage, Filter, runs};
 use crate::visibility::surface::{Cull, Samples};
 use crate::work::Work;
+use std::collections::BTreeMap;
 
 /// Creates sheets one behind another, each of many triangles with common edges; in front and between them some that
 /// intersect, and something opaque.
@@ -51,8 +54,60 @@ fn scene() -> Scene {
     Scene { materials, ..scene_of(Mesh { positions, parts, ..Mesh::default() }) }
 }
 
+/// The fragments of blended triangles by tile-local pixel and item: the least depth, and the samples as bits.
+struct Recorder {
+    offsets: &'static [[i32; 2]],
+    fragments: BTreeMap<([i32; 2], u32), (f32, u32)>,
+}
+
+impl FragmentTest for Recorder {
+    fn pass<S: Simd>(
+        &mut self,
+        simd: S,
+        write: S::i32s,
+        t: &ScreenTriangle,
+        at: [i32; 2],
+        (first, shift): (usize, u32),
+    ) -> S::i32s {
+        one_by_one(simd, write, at, shift, |x, y, sample| {
+            let sample = first + sample;
+            let [dx, dy] = [0, 1].map(|axis| {
+                let pixel = [x, y][axis] - t.origin()[axis];
+                pixel as f32 + self.offsets[sample][axis] as f32 / 256.0
+            });
+            let (depth, samples) =
+                self.fragments.entry(([x, y], t.item)).or_insert((f32::INFINITY, 0));
+            *depth = depth.min(t.depth_at(dx, dy));
+            *samples |= 1 << sample;
+            false
+        })
+    }
+}
+
+impl Recorder {
+    /// Returns the colour of a pixel, whose samples show `opaque` behind the blended surfaces: the mean of its samples,
+    /// each composed from far to near.
+    fn composed(&self, [x, y]: [i32; 2], opaque: &[u32], behind: Vec4, lit: &mut Lit<'_>) -> Vec4 {
+        let mut under: Vec<Vec4> = (opaque.iter())
+            .map(|&item| if item == NO_ITEM { behind } else { lit.color(item, x, y) })
+            .collect();
+        let here = self.fragments.range(([x, y], 0)..=([x, y], NO_ITEM));
+        let mut here: Vec<_> =
+            here.map(|(&(_, item), &(depth, bits))| (depth, item, bits)).collect();
+        here.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        for (_, item, bits) in here {
+            let color = premultiply(lit.color(item, x, y));
+            let samples = under.iter_mut().enumerate();
+            for (_, under) in samples.filter(|(i, _)| bits >> i & 1 == 1) {
+                *under = color + *under * (1.0 - color.w);
+            }
+        }
+        under.iter().fold(Vec4::ZERO, |sum, color| sum + *color) * (1.0 / under.len() as f32)
+    }
+}
+
 #[test]
-fn sheets_look_as_if_all_fragments_were_sorted() {
+fn blended_surfaces_are_composed_sample_by_sample_from_far_to_near() {
     let scene = scene();
     let camera = camera(DVec3::Z * 2.0, Projection::Orthographic { height: 2.0 });
     let camera = Camera { near: 1.0, far: 4.0, ..camera };
@@ -72,40 +127,28 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         let (mut lit, area) = (Lit::new(lighting), [[0, 0], [64, 64]]);
         let mut planes = SamplePlane::of(samples.offsets());
         binned.rasterize(Coverage::Opaque, &mut planes, area, 0, None::<&mut AllPass>);
+        let mut recorder = Recorder { offsets: samples.offsets(), fragments: BTreeMap::new() };
+        binned.rasterize(Coverage::Blended, &mut planes, area, 0, Some(&mut recorder));
         let mut order = FrontToBack::default();
         let triangles = order.nearest_first(&binned, 0);
-        let planes = &mut planes;
-        let (mut sheets, mut sorted) =
-            (Blended::new(samples.offsets()), Blended::new(samples.offsets()));
-        let taken = dispatch!(level, simd => {
-            light_blended(simd, &mut sheets, triangles, planes, area, &mut lit);
-            // Only sorted; and the number of sheets that there would be.
-            let (mut rest, mut taken) = (triangles, [0; 2]);
-            sorted.layers.open(area);
-            while !rest.is_empty() {
-                let Blended { sheet, fragments, layers } = &mut sorted;
-                let n = light_sorted(simd, fragments, (rest, 1), layers, planes, area, &mut lit);
-                let mut other = LitLayers::new(layers.count);
-                other.open(area);
-                let m = light_sheet(simd, sheet, rest, &mut other, planes, area, &mut lit);
-                taken[usize::from(m.is_ok())] += 1;
-                rest = &rest[n..];
-            }
-            taken
+        let (planes, behind) = (&mut planes, Vec4::new(0.1, 0.2, 0.3, 0.5));
+        let (mut blended, mut sums) =
+            (Blended::new(samples.offsets()), vec![BlockSums::default(); BLOCKS]);
+        dispatch!(level, simd => {
+            light_blended(simd, &mut blended, triangles, planes, area, &mut lit);
+            lay_over(simd, planes, &blended, &mut lit, &Area::new(area, |_| behind), &mut sums);
         });
-        assert!(taken[0] > 0 && taken[1] > 4, "{taken:?}");
-        let area = Area::new(area, |_| Vec4::new(0.1, 0.2, 0.3, 0.5));
-        let mut pictures = [vec![BlockSums::default(); BLOCKS], vec![BlockSums::default(); BLOCKS]];
-        for (blended, sums) in [&sheets, &sorted].into_iter().zip(&mut pictures) {
-            dispatch!(level, simd => lay_over(simd, planes, blended, &mut lit, &area, sums));
+        let mut pixels: Vec<[i32; 2]> =
+            recorder.fragments.keys().map(|(pixel, _)| *pixel).collect();
+        pixels.dedup();
+        assert!(pixels.len() > 3000);
+        for [x, y] in pixels {
+            let (pixel, place) = ((y * TILE + x) as usize, place_of(x, y));
+            let opaque: Vec<u32> =
+                planes.iter().flat_map(|plane| plane.items(pixel)).copied().collect();
+            let expected = recorder.composed([x, y], &opaque, premultiply(behind), &mut lit);
+            let found = sums[place / LANES].0.map(|channel| channel[place % LANES]);
+            assert_eq!(found, expected.to_array(), "{samples:?} {level:?} {x} {y}");
         }
-        // Red, green, blue and alpha, block by block.
-        let numbers = |sums: &[BlockSums]| -> Vec<u32> {
-            sums.iter().flat_map(|of_block| of_block.0).flatten().map(f32::to_bits).collect()
-        };
-        let [a, b] = pictures.map(|sums| numbers(&sums));
-        let differing = a.iter().zip(&b).filter(|(a, b)| a != b).count();
-        assert_eq!(differing, 0, "{samples:?} {level:?}");
-        assert!(a.iter().filter(|number| **number != 0).count() > 4 * 3000);
     }
 }
