@@ -9,10 +9,11 @@
 //! triangle once per pixel. Equal depths are won by the lower item. Blended surfaces are sorted per
 //! pixel.
 //!
-//! Where a triangle goes: `bins` sets it up and lists it for the tiles that it touches, unless it is as small as a pixel
-//! and `micropolygon` samples it during set-up. In a tile, `rasterize` keeps the nearest item of each sample, with near
-//! triangles first (`front_to_back`). `resolve` passes the visible items to `lit`, which lights them, and weights the
-//! colours by samples; `blended` lays blended surfaces over them.
+//! Where a triangle goes: `bins` sets it up and lists it for the tiles that it touches, unless it is as small as a
+//! pixel and `micropolygon` samples it during set-up. In a tile, `rasterize` keeps the nearest item of each sample, with
+//! near triangles first (`front_to_back`). `resolve` passes the visible items to the queue of `lit`, which lights them
+//! and adds the colours to the sums of their pixels; `blended` lays blended surfaces over these. At last `resolve`
+//! encodes the sums.
 
 mod area;
 mod band;

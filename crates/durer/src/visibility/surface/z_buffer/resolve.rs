@@ -1,5 +1,5 @@
-//! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
-//! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
+//! From the visible items of a tile to colours: each item is lit once per pixel, weighted by its samples, and added to the
+//! background in linear light; blended surfaces are laid over; all pixels are encoded.
 
 use super::area::{Area, Codes, block_at, place_of};
 use super::blended::{Blended, lay_over};

@@ -77,8 +77,8 @@ impl FragmentList {
             *slot += 1;
         }
         std::mem::swap(&mut self.list, &mut self.by_place);
-        // The samples of one item at one pixel become one fragment: there may be several, because they may be in several
-        // planes, and the rasterizer may visit a pixel of a triangle twice.
+        // The samples of one item at one pixel become one fragment. There may be several, because planes of samples are
+        // rasterized one by one, and a pixel of a triangle may be visited twice.
         self.list.dedup_by(|next, kept| {
             let same = (next.place, next.item) == (kept.place, kept.item);
             if same {

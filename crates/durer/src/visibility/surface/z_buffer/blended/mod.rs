@@ -75,8 +75,8 @@ pub fn light_blended<S: Simd>(
     light_nearer(simd, fragments, f32::INFINITY, layers, lit);
 }
 
-/// Lays the lit surfaces over the opaque ones and the background, and puts the colours of the pixels where there are any
-/// into `sums`.
+/// Lays the lit surfaces over the opaque ones and the background, and puts the colours of pixels that have any into
+/// `sums`.
 #[simd]
 pub fn lay_over<S: Simd>(
     simd: S,
