@@ -1,16 +1,20 @@
 //! Blended surfaces of a tile: lit from near to far until almost nothing shows through, and laid over the opaque
 //! surfaces from far to near.
 //!
-//! Fragments are collected until there are many, and sorted pixel by pixel; those that are nearer than all triangles to
-//! come are lit.
+//! Triangles that do not overlap are lit in any order ([`Sheet`]). From the first ones on that overlap in both area and
+//! depth range, fragments are collected and sorted pixel by pixel; if there are many, those that are nearer than all
+//! triangles to come are lit.
 
 mod fragments;
 mod layers;
+mod sheet;
 #[cfg(test)]
 mod tests;
 
-use super::area::{Area, LANES, block_at};
+use super::area::{Area, BLOCKS, LANES, block_at};
+use super::rasterize::rasterize;
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, samples_of_block};
+use crate::raster::fixed::HALF_PIXEL;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::{BlockSums, Lit, MOST_SAMPLES};
 use crate::visibility::surface::points::patch::Patch;
@@ -20,12 +24,17 @@ use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 use fearless_simd_macros::simd;
 use fragments::{FragmentList, light_nearer};
 use layers::LitLayers;
+use sheet::Sheet;
+
+/// A sheet with more blocks is likely to be covered by the next large triangle.
+const MANY_BLOCKS: usize = BLOCKS / 2;
 
 /// Number of fragments collected before those nearer than all to come are lit.
 const MANY: usize = if cfg!(test) { 64 } else { TILE_PIXELS };
 
 /// The blended surfaces of a tile.
 pub struct Blended {
+    sheet: Sheet,
     fragments: FragmentList,
     layers: LitLayers,
 }
@@ -33,7 +42,11 @@ pub struct Blended {
 impl Blended {
     /// Creates the state for pixels with these samples.
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
-        Self { fragments: FragmentList::new(offsets), layers: LitLayers::new(offsets.len()) }
+        Self {
+            sheet: Sheet::new(offsets.len()),
+            fragments: FragmentList::new(offsets),
+            layers: LitLayers::new(offsets.len()),
+        }
     }
 
     /// Begins another tile, with nothing lit.
@@ -52,13 +65,108 @@ impl Blended {
 pub fn light_blended<S: Simd>(
     simd: S,
     blended: &mut Blended,
-    triangles: &[&ScreenTriangle],
+    mut triangles: &[&ScreenTriangle],
     planes: &mut [SamplePlane],
     area: [[i32; 2]; 2],
     lit: &mut Lit<'_>,
 ) {
-    let Blended { fragments, layers } = blended;
+    let Blended { sheet, fragments, layers } = blended;
     layers.open(area);
+    while !triangles.is_empty() && !layers.hide_all(area[1]) {
+        match light_sheet(simd, sheet, triangles, layers, planes, area, lit) {
+            Some(taken) => triangles = &triangles[taken..],
+            // If some overlap in depth, more of those behind do.
+            None => return light_sorted(simd, fragments, triangles, layers, planes, area, lit),
+        }
+    }
+}
+
+/// Lights the first triangles up to the first overlap, if all others are behind them, and returns their number; otherwise
+/// lights none.
+#[inline(always)]
+fn light_sheet<S: Simd>(
+    simd: S,
+    sheet: &mut Sheet,
+    triangles: &[&ScreenTriangle],
+    layers: &mut LitLayers,
+    planes: &mut [SamplePlane],
+    area: [[i32; 2]; 2],
+    lit: &mut Lit<'_>,
+) -> Option<usize> {
+    sheet.clear();
+    let (mut taken, mut farthest) = (0, f32::NEG_INFINITY);
+    // The item that covers others; the rest of it is in the sheet.
+    let mut over = NO_ITEM;
+    for t in triangles {
+        // A surface behind all of the sheet may begin another one: it does if it is likely to cover much of it.
+        if t.depth_min > farthest && sheet.begun().len() > MANY_BLOCKS && is_large(t, area) {
+            break;
+        }
+        rasterize(simd, planes, area, std::iter::once(*t), Some(&mut *sheet));
+        if sheet.covers_another {
+            // A part of an item that was cut may be among the others.
+            let in_parts = || triangles[..taken].iter().any(|other| other.item == t.item);
+            if t.depth_min <= farthest || in_parts() {
+                return None;
+            }
+            over = t.item;
+            break;
+        }
+        farthest = farthest.max(t.depth_max);
+        taken += 1;
+    }
+    let over = u32x16::splat(simd, over);
+    let none = u32x16::splat(simd, NO_ITEM);
+    let mut samples = [none; MOST_SAMPLES];
+    let samples = &mut samples[..layers.count];
+    for &block in sheet.begun() {
+        let block = block as usize;
+        sheet.block(simd, block, samples);
+        for items in samples.iter_mut() {
+            *items = items.simd_eq(over).select(none, *items);
+        }
+        // One of the pixel's items at a time; there are at most as many items as samples.
+        for _ in 0..layers.count {
+            let mut items = none;
+            for of_sample in samples.iter() {
+                items = items.simd_eq(none).select(*of_sample, items);
+            }
+            if items.simd_eq(none).all_true() {
+                break;
+            }
+            let mut covered = u32x16::splat(simd, 0);
+            for (i, of_sample) in samples.iter_mut().enumerate() {
+                let same = of_sample.simd_eq(items);
+                covered |= same.select(u32x16::splat(simd, 1 << i), u32x16::splat(simd, 0));
+                *of_sample = same.select(none, *of_sample);
+            }
+            layers.light(simd, block, items, covered, lit);
+        }
+    }
+    Some(taken)
+}
+
+/// Returns whether the box of a triangle takes more than a quarter of a tile.
+fn is_large(t: &ScreenTriangle, [tile, size]: [[i32; 2]; 2]) -> bool {
+    let reach = HALF_PIXEL;
+    t.pixel_bounds(reach).is_some_and(|[x0, y0, x1, y1]| {
+        let across = (x1 - tile[0]).min(size[0] - 1) - (x0 - tile[0]).max(0);
+        let down = (y1 - tile[1]).min(size[1] - 1) - (y0 - tile[1]).max(0);
+        across.max(0) * down.max(0) > TILE_PIXELS as i32 / 4
+    })
+}
+
+/// Lights all triangles, sorted pixel by pixel.
+#[inline(always)]
+fn light_sorted<S: Simd>(
+    simd: S,
+    fragments: &mut FragmentList,
+    triangles: &[&ScreenTriangle],
+    layers: &mut LitLayers,
+    planes: &mut [SamplePlane],
+    area: [[i32; 2]; 2],
+    lit: &mut Lit<'_>,
+) {
     fragments.open(area[0]);
     let mut limit = MANY;
     for t in triangles {

@@ -132,11 +132,21 @@ fn blended_surfaces_are_composed_sample_by_sample_from_far_to_near() {
         let mut order = FrontToBack::default();
         let triangles = order.nearest_first(&binned, 0);
         let (planes, behind) = (&mut planes, Vec4::new(0.1, 0.2, 0.3, 0.5));
-        let (mut blended, mut sums) =
-            (Blended::new(samples.offsets()), vec![BlockSums::default(); BLOCKS]);
+        let mut blended = Blended::new(samples.offsets());
+        let [mut sums, mut sorted] = [(); 2].map(|()| vec![BlockSums::default(); BLOCKS]);
         dispatch!(level, simd => {
             light_blended(simd, &mut blended, triangles, planes, area, &mut lit);
             lay_over(simd, planes, &blended, &mut lit, &Area::new(area, |_| behind), &mut sums);
+            // Only sorted.
+            blended.layers.open(area);
+            let Blended { fragments, layers, .. } = &mut blended;
+            light_sorted(simd, fragments, triangles, layers, planes, area, &mut lit);
+            lay_over(simd, planes, &blended, &mut lit, &Area::new(area, |_| behind), &mut sorted);
+            // The first triangles form a sheet.
+            let Blended { sheet, layers, .. } = &mut blended;
+            layers.open(area);
+            let taken = light_sheet(simd, sheet, triangles, layers, planes, area, &mut lit);
+            assert!(taken.is_some());
         });
         let mut pixels: Vec<[i32; 2]> =
             recorder.fragments.keys().map(|(pixel, _)| *pixel).collect();
@@ -148,8 +158,10 @@ fn blended_surfaces_are_composed_sample_by_sample_from_far_to_near() {
             let opaque: Vec<u32> =
                 planes.iter().flat_map(|plane| plane.items(pixel)).copied().collect();
             let expected = recorder.composed([x, y], &opaque, premultiply(behind), &mut lit);
-            let found = sums[place / LANES].0.map(|channel| channel[place % LANES]);
-            assert_eq!(found, expected.to_array(), "{samples:?} {level:?} {x} {y}");
+            for sums in [&sums, &sorted] {
+                let found = sums[place / LANES].0.map(|channel| channel[place % LANES]);
+                assert_eq!(found, expected.to_array(), "{samples:?} {level:?} {x} {y}");
+            }
         }
     }
 }
