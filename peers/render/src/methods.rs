@@ -12,7 +12,7 @@ use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::surface::ray::PrimaryRays;
 use durer::visibility::surface::{
-    Cull, Filter, Options, SurfaceInput, SurfaceMethod, render_with,
+    self, Cull, Filter, SurfaceInput, SurfaceMethod, render_with,
 };
 use std::path::Path;
 
@@ -127,7 +127,7 @@ fn picture(
     let listed = if method == SurfaceMethod::ZBuffer { &nothing } else { scene };
     let input = SurfaceInput { scene, ..SurfaceInput::new(listed, view, filter)? };
     let mut framebuffer = Framebuffer::new(SIDE, SIDE);
-    let options = Options { samples, ..Default::default() };
+    let options = surface::Options { samples, ..Default::default() };
     render_with(method, &input, lights, &options, &mut framebuffer, &mut NoTrace)?;
     Ok(framebuffer)
 }
