@@ -11,9 +11,7 @@ use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::surface::ray::PrimaryRays;
-use durer::visibility::surface::{
-    self, Cull, Filter, SurfaceInput, SurfaceMethod, render_with,
-};
+use durer::visibility::surface::{self, Cull, Filter, SurfaceInput, SurfaceMethod, render_with};
 use std::path::Path;
 
 const SIDE: u32 = 1024;
