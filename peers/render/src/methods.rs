@@ -123,7 +123,8 @@ fn picture(
     // The production path makes no list of triangles.
     let nothing = Scene::default();
     let listed = if method == SurfaceMethod::ZBuffer { &nothing } else { scene };
-    let input = SurfaceInput { scene, ..SurfaceInput::new(listed, view, filter)? };
+    let mut input = SurfaceInput::new(listed, view, filter)?;
+    input.scene = scene;
     let mut framebuffer = Framebuffer::new(SIDE, SIDE);
     let options = surface::Options { samples, ..Default::default() };
     render_with(method, &input, lights, &options, &mut framebuffer, &mut NoTrace)?;
