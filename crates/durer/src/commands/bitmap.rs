@@ -55,7 +55,7 @@ impl Bitmap {
     }
 
     /// Returns whether the bit of a pixel is set; false beyond the mask.
-    pub(crate) fn is_set(&self, x: u32, y: u32) -> bool {
+    pub fn is_set(&self, x: u32, y: u32) -> bool {
         let index = y as usize * self.width.div_ceil(8) as usize + (x / 8) as usize;
         let byte = self.bytes.get(index).copied().unwrap_or(0);
         x < self.width && y < self.height && byte & (0x80 >> (x % 8)) != 0

@@ -100,7 +100,7 @@ const fn kinds(method: SurfaceMethod) -> &'static [Kind] {
 /// ```
 /// use durer::explain::Tally;
 /// use durer::trace::Tracer;
-/// use durer::visibility::surface::{SurfaceMethod, method::Step, scan_line_z};
+/// use durer::visibility::surface::{Step, SurfaceMethod, scan_line_z};
 ///
 /// let mut tally = Tally::default();
 /// tally.step(|| Step::ScanLineZ(scan_line_z::Step::Span { item: 0, x0: 3, x1: 8 }));
@@ -109,7 +109,7 @@ const fn kinds(method: SurfaceMethod) -> &'static [Kind] {
 /// assert_eq!(compared.map(|of| of.count), Some(5));
 /// ```
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Tally {
+pub struct Tally {
     counts: [u64; KINDS.len()],
     /// Fragments of each column of the current row.
     lists: Vec<u64>,
@@ -117,7 +117,7 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Returns the counts of a method, its main one first.
-    pub(crate) fn operations(&self, method: SurfaceMethod) -> Vec<Operations> {
+    pub fn operations(&self, method: SurfaceMethod) -> Vec<Operations> {
         let of = |&kind: &Kind| {
             let (name, title) = KINDS[kind as usize];
             Operations { name, title, count: self.counts[kind as usize] }

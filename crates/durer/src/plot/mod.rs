@@ -7,7 +7,7 @@ mod axes;
 mod cells;
 mod color_bar;
 pub(crate) mod color_map;
-pub(crate) mod ticks;
+pub mod ticks;
 
 pub use color_map::ColorMap;
 

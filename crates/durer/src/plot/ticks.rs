@@ -14,7 +14,7 @@ const DIGITS: f64 = 1e6;
 /// assert_eq!(offset([1e9, 1e9 + 1.0]), 1e9);
 /// assert_eq!(offset([-4.0, 4.0]), 0.0);
 /// ```
-pub(crate) fn offset([low, high]: [f64; 2]) -> f64 {
+pub fn offset([low, high]: [f64; 2]) -> f64 {
     let (extent, largest) = (high - low, low.abs().max(high.abs()));
     if !(extent > 0.0 && extent.is_finite() && largest > extent * DIGITS) {
         return 0.0;
@@ -31,7 +31,7 @@ pub(crate) fn offset([low, high]: [f64; 2]) -> f64 {
 /// let texts: Vec<String> = durer::plot::ticks::ticks([-0.1, 1.04], 5).into_iter().map(|t| t.1).collect();
 /// assert_eq!(texts, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
 /// ```
-pub(crate) fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
+pub fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
     let extent = high - low;
     if !(extent > 0.0 && extent.is_finite()) {
         return if low.is_finite() { vec![(low, short(low))] } else { Vec::new() };
@@ -71,7 +71,7 @@ fn power(exponent: i32) -> f64 {
 }
 
 /// Returns a number with as many digits as it needs, seven at most.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
         return text(value, 7);
     }

@@ -60,7 +60,7 @@ impl<'a> PreparedTexture<'a> {
     /// ```
     /// use durer::math::Vec2;
     /// use durer::scene::{Image, Sampler};
-    /// use durer::shade::PreparedTexture;
+    /// use durer::shade::texture::PreparedTexture;
     /// use durer::shade::texture::{Step, Usage};
     /// use durer::trace::Recorder;
     ///

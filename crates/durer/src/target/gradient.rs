@@ -85,7 +85,7 @@ impl Gradient {
     /// let expected = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(3.0, 0.0) };
     /// assert_eq!((larger.shape, larger.transform), (expected, DAffine2::IDENTITY));
     /// ```
-    pub(crate) fn mapped(&self, map: DAffine2) -> Self {
+    pub fn mapped(&self, map: DAffine2) -> Self {
         let map = map * self.transform;
         let (shape, transform) = match self.shape {
             Shape::Linear { start, end } => {

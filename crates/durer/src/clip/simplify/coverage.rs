@@ -80,7 +80,8 @@ impl PseudocodeLine for Step {
 /// Lines and rings that are simplified together.
 ///
 /// ```
-/// use durer::clip::simplify::{Coverage, LineSimplifier, coverage::Options};
+/// use durer::clip::simplify::LineSimplifier;
+/// use durer::clip::simplify::coverage::{Coverage, Options};
 /// use durer::math::DVec2;
 /// use durer::trace::NoTrace;
 ///

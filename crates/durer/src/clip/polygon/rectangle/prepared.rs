@@ -94,7 +94,7 @@ impl Prepared {
     }
 
     /// Returns the part of all polygons in the window, with the same bits as [`super::clip`].
-    pub(crate) fn clip(&self, window: &Rect) -> Shapes {
+    pub fn clip(&self, window: &Rect) -> Shapes {
         self.run::<NoSources>(window).0
     }
 
@@ -145,7 +145,7 @@ impl Prepared {
 
     /// Returns whether a point lies in the closed polygons, by the even-odd rule over all rings;
     /// exact.
-    pub(crate) fn contains(&self, p: DVec2) -> bool {
+    pub fn contains(&self, p: DVec2) -> bool {
         let place = self.place(p);
         place.odd || place.on_border
     }
