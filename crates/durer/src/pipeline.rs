@@ -313,8 +313,8 @@ pub fn render_into(
 /// Renders like [`render`], and counts the operations of the algorithm: depth comparisons, windows, pairs of polygons,
 /// rays and the like. The picture has the same bytes.
 ///
-/// The counts of the z-buffer are those of its loop over triangles and pixels' centres: see
-/// [`crate::visibility::surface::comparisons`]. It is run a second time for them.
+/// The counts of the z-buffer are those of its loop over triangles and pixels' centres: its own tiles
+/// compare less. It is run a second time for them.
 ///
 /// # Errors
 /// As [`render`].

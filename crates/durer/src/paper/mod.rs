@@ -51,7 +51,7 @@ pub enum Hidden {
 }
 
 /// Hidden lines behind more surfaces than this share a layer.
-pub(crate) const DEEPEST: u32 = 9;
+pub const DEEPEST: u32 = 9;
 
 /// Part of the plane that the paper shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -239,7 +239,7 @@ pub struct LaidOut {
 /// ```
 ///
 /// # Errors
-/// The errors of [`Options::check`]; [`Error::Parameter`] for a scale at which the page is too small.
+/// [`Error::Parameter`] for options out of their ranges, and for a scale at which the page is too small.
 pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<LaidOut> {
     options.check()?;
     let frame = frame_of(drawing, options.frame);

@@ -1,23 +1,22 @@
 //! Exposure: how bright the light of a picture is shown.
-//!
-//! Files give light in units of their own: lux and candela, or an artist's program's conversion of watts.
-//! [`Exposure::Auto`] works like a photographer's light meter (incident light, ISO 2720:1974): it measures the light at
-//! points spread evenly over all surfaces and ignores the few brightest of the lit points, which almost touch a lamp.
-//! All lights are then scaled by one factor, so that scenes that differ only in the strength of all their lamps look
-//! alike. Emissive and unlit surfaces are given as parts of white already and do not change. The eye's position and
-//! shadows have no influence, so all pictures of a scene are exposed alike.
-//!
-//! Cost: O(triangles / stride) for the areas of at most 2¹⁶ triangles, and 2¹² points × lights.
 
 use super::light::{Around, PreparedLights, ambient};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Camera, Instance, Light, Mesh, Scene};
 
-/// Exposure of a picture.
+/// Exposure: how bright the light of a picture is shown.
+///
+/// Files give light in units of their own: lux and candela, or an artist's program's conversion of watts.
+/// [`Self::Auto`] works like a photographer's light meter (incident light, ISO 2720:1974): it measures the light at
+/// points spread evenly over all surfaces and ignores the few brightest of the lit points, which almost touch a lamp.
+/// All lights are then scaled by one factor, so that scenes that differ only in the strength of all their lamps look
+/// alike. Emissive and unlit surfaces are given as parts of white already and do not change. The eye's position and
+/// shadows have no influence, so all pictures of a scene are exposed alike.
+///
+/// Cost: O(triangles / stride) for the areas of at most 2¹⁶ triangles, and 2¹² points × lights.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Exposure {
-    /// Automatic: a white matte surface where much light falls is nearly white; see [the
-    /// module](self). Light that comes with the camera is made so and stays.
+    /// Automatic: a white matte surface where much light falls is nearly white. Light that comes with the camera is made so and stays.
     #[default]
     Auto,
     /// Factor of two to this power, −64 … 64, for all light including emission; 0 shows lights in their own unit
@@ -91,7 +90,7 @@ impl PreparedLights {
         prepared
     }
 
-    /// Returns the scene's own lights, [exposed](Self::exposed), or, if it has none,
+    /// Returns the scene's own lights, exposed, or, if it has none,
     /// [`PreparedLights::auto`].
     pub fn of(scene: &Scene, camera: &Camera) -> Self {
         match &scene.lights[..] {

@@ -76,7 +76,7 @@ impl PreparedLights {
     /// Prepares lights for pictures from this camera's eye.
     ///
     /// Directions that are not finite or zero are left out, and so are positions that are not finite. If there is no
-    /// ambient light, [`DEFAULT_AMBIENT`] is added. Mirrors show the ambient light and a quarter of the directional
+    /// ambient light, 0.1 is added. Mirrors show the ambient light and a quarter of the directional
     /// light, as if that were spread over the whole sphere.
     pub fn new(lights: &[Light], camera: &Camera) -> Self {
         Self::within(None, lights, camera)
@@ -127,8 +127,7 @@ impl PreparedLights {
         (environment.gradient, environment.step) = (0.4, 0.45);
     }
 
-    /// Creates key, fill and rim lights that go with the camera, and more ambient light from above: see
-    /// [`auto_lights`].
+    /// Creates key, fill and rim lights that go with the camera, and more ambient light from above.
     pub fn auto(camera: &Camera) -> Self {
         let mut prepared = Self::new(&auto_lights(camera), camera);
         let environment = &mut prepared.environment;

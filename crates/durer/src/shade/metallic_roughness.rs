@@ -4,7 +4,7 @@
 //! *Average Irregularity Representation of a Rough Surface*, JOSA 65(5), 1975 (the "GGX" of Walter et al. 2007);
 //! Smith's height-correlated masking after Heitz, *Understanding the Masking-Shadowing Function*, JCGT 3(2), 2014;
 //! Fresnel reflection after Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, 1994. Reflections of
-//! the surroundings ([`super::environment`]) are weighted by the closed form of Karis, *Physically Based Shading on
+//! the surroundings ([`Surroundings`](super::Surroundings)) are weighted by the closed form of Karis, *Physically Based Shading on
 //! Mobile*, 2014. Light reflected more than once between microfacets is restored by scaling, as in Turquin, *Practical
 //! Multiple Scattering Compensation for Microfacet Models*, 2019. Cost: O(lights) per pixel. Limits: no shadows.
 

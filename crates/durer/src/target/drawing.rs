@@ -208,7 +208,7 @@ pub struct Label {
 }
 
 /// Number of steps of [`Drawing::nearness`].
-pub(crate) const NEARNESS_STEPS: u8 = 4;
+pub const NEARNESS_STEPS: u8 = 4;
 
 /// Content of a view, as geometry in the plane of the picture.
 ///

@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
 };
 
 /// Largest distance of a model's lines and points from a picked point, in pixels.
-pub(crate) const REACH: f64 = 3.0;
+pub const REACH: f64 = 3.0;
 
 /// A part of the screen, in pixels, x right and y down; pixel (0, 0) is the square from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,8 +10,8 @@
 //! is exactly the visible faces; otherwise it leaves out faces that are certainly hidden, about half of all. Coherence
 //! used: objects (a body's back is hidden by its front).
 //!
-//! The image-space algorithms do the same by the sign of a triangle's area on the screen ([`super::surface::setup`],
-//! switched by [`super::surface::Cull`]): the same triangles are removed, except slivers that rounding to the grid of
+//! The image-space algorithms do the same by the sign of a triangle's area on the screen (switched by
+//! [`super::surface::Cull`]): the same triangles are removed, except slivers that rounding to the grid of
 //! 1/256 pixel turns over.
 //!
 //! ```

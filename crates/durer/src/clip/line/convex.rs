@@ -101,7 +101,7 @@ pub(crate) struct Edge {
 }
 
 /// A closed half space E ≥ 0 of N dimensions that knows how far its rounded E can be off:
-/// [`HalfPlane`], [`Edge`] or [`Plane`].
+/// [`HalfPlane`], [`Plane`] or an edge of a [`ConvexPolygon`].
 pub trait HalfSpace<const N: usize> {
     /// Returns E(p) rounded, and a bound of its error; both may be infinite or NaN for huge coordinates.
     fn value(&self, p: [f64; N]) -> (f64, f64);

@@ -1,6 +1,6 @@
 //! Polygons: the types of shapes, and the algorithms that clip them.
 //!
-//! [`overlay`] is the robust way to clip: it accepts any rings and returns valid polygons. [`rectangle`] is the fast
+//! [`overlay`](mod@overlay) is the robust way to clip: it accepts any rings and returns valid polygons. [`rectangle`] is the fast
 //! path for windows and map tiles. The others are the published algorithms, each with its own preconditions.
 
 pub mod coverage;
@@ -52,7 +52,7 @@ crate::info::family! {
         Vatti => vatti::INFO,
         /// [`greiner_hormann`]
         GreinerHormann => greiner_hormann::INFO,
-        /// [`overlay`]
+        /// [`overlay`](mod@overlay)
         Overlay => overlay::INFO,
     }
 }

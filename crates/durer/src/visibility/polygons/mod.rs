@@ -52,7 +52,7 @@ use crate::trace::NoTrace;
 use crate::work::{Charge, Work};
 
 /// The picture that is made: an item for each pixel, which is the index of a face, or
-/// [`NO_ITEM`](crate::target::NO_ITEM).
+/// [`NO_ITEM`].
 #[derive(Debug, Clone, Default)]
 pub struct Screen {
     /// Pixels across.

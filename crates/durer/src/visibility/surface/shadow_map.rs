@@ -51,7 +51,7 @@ const MARGIN: f64 = 1.05;
 /// is this near to a light is left out.
 const NEAR: f64 = 1e-3;
 
-/// Makes the maps of all directional, spot and point lights into [`PreparedLights::shadows`].
+/// Makes the maps of all directional, spot and point lights into [`PreparedLights`].
 ///
 /// # Errors
 /// [`Error::Parameter`] for a side of 0, [`Error::TooLarge`] above [`MAX_SIDE`], and the errors of [`SurfaceInput::new`].

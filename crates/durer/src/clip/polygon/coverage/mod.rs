@@ -1,6 +1,6 @@
 //! Cuts polygons with a mask so that borders which neighbours share stay shared.
 //!
-//! [`overlay`](super::overlay) decides what belongs to the result, on a grid that depends on the extent of the
+//! [`overlay`](mod@super::overlay) decides what belongs to the result, on a grid that depends on the extent of the
 //! operands, but the result's vertices do not stay on the grid. Vertices of the input keep their coordinates bit for
 //! bit, and a cut is where the edges *of the input* cross, correctly rounded. Both depend only on those vertices and
 //! edges, so that two neighbours, and the inside and the outside part, have the same points on a common border.
