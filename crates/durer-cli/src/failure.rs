@@ -45,6 +45,15 @@ impl Failure {
         }
     }
 
+    /// Returns the failure with the name of the input that it is about.
+    pub fn of_input(self, name: &str) -> Self {
+        match self {
+            Self::Usage(message) => Self::Usage(format!("{name}: {message}")),
+            Self::Data(message) => Self::Data(format!("{name}: {message}")),
+            other => other.named(name),
+        }
+    }
+
     /// Creates a failure of a file: its name, then what is wrong with it.
     pub fn of_file(file: &Path, what: impl fmt::Display) -> Self {
         Self::Data(format!("{}: {what}", shown_path(file)))

@@ -16,6 +16,15 @@ pub enum Place {
     Byte(u64),
     /// Path inside a structured file, e.g. `meshes[0].primitives[1].indices`.
     Path(String),
+    /// Place in a feature of map data.
+    Feature {
+        /// Number of the feature in its file, counted from 1.
+        number: u64,
+        /// Its id or name with the key, e.g. `id 7` or `name Bavaria`; empty without one.
+        name: String,
+        /// Position in the file.
+        at: Box<Self>,
+    },
 }
 
 impl std::fmt::Display for Place {
@@ -26,6 +35,13 @@ impl std::fmt::Display for Place {
             Self::Line(line, column) => write!(f, "line {line}, column {column}: "),
             Self::Byte(offset) => write!(f, "byte {offset}: "),
             Self::Path(path) => write!(f, "{}: ", shown(path)),
+            Self::Feature { number, name, at } => {
+                let at = at.to_string();
+                let at = at.strip_suffix(": ").map_or(String::new(), |at| format!("{at}, "));
+                let name =
+                    if name.is_empty() { String::new() } else { format!(" ({})", shown(name)) };
+                write!(f, "{at}feature {number}{name}: ")
+            }
         }
     }
 }

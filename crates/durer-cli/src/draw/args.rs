@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use durer::math::Rect;
 use durer::view::window::PixelRect;
 use durer_formats::geo::GeoFormat;
+use durer_formats::geo::crs::Crs;
 use std::path::PathBuf;
 
 pub const EXAMPLES: &str = "\
@@ -19,15 +20,17 @@ Examples:
   durer draw page.svg -o page.png --font fonts/
   durer draw countries.geojson -o world.png --size 1600x --label NAME
   durer draw countries.geojson -o world.svg
+  durer draw countries.geojson --to-crs robinson -o robinson.svg
   durer draw land.geojson --fill '#f4efe6' --stroke none rivers.geojson --stroke '#4a7fb5' \\
       cities.geojson --marker-size 5 --fill '#b03030' --label name -o map.png \\
       --background '#cfe2f0' --window -10,35,30,60
   durer clip roads.geojson --window 5,45,11,48 -o - | durer draw - -o alps.png
 
-Map layers are drawn in the order given. Style options apply to the layer before them; \
-those before the first layer apply to all layers.
+Map layers are drawn in the order given. Style options, --layer, --where and --from-crs apply to the layer before \
+them; those before the first layer apply to all layers.
 
-Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage.";
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong usage; 3 features were left out by \
+--skip-failures.";
 
 /// The options of `durer draw`.
 #[derive(Debug, Args)]
@@ -54,6 +57,15 @@ pub struct DrawArgs {
     /// The format of the map layers [default: by their content, then by their suffix]
     #[arg(long, value_name = "FORMAT", value_parser = crate::layer::format, help_heading = "Reading")]
     pub from: Option<GeoFormat>,
+    /// Convert the layers to this coordinate system; --window is given in it
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse, help_heading = "Coordinates")]
+    pub to_crs: Option<Crs>,
+    /// Leave out features that cannot be read, with a warning that counts them and exit code 3
+    ///
+    /// Works for GeoJSON, CSV, WKT with a geometry per line, hexadecimal WKB and Shapefiles. In other formats, and in
+    /// text that is not JSON, the end of a broken feature cannot be found.
+    #[arg(long, help_heading = "Reading")]
+    pub skip_failures: bool,
     /// Refuse files of more bytes; k, M, G are understood
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true, default_value = "4G", value_parser = values::bytes, help_heading = "Reading")]
     pub max_bytes: u64,
@@ -82,7 +94,7 @@ pub struct PictureArgs {
     /// A colour, or `transparent` [default: transparent for an SVG, white for a map]
     #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
     pub background: Option<[u8; 4]>,
-    /// Part of the map to show: left, lower, right and upper border, in the coordinates of the file
+    /// Part of the map to show: left, lower, right and upper border, in the coordinates of the file, or of --to-crs
     ///
     /// Of an SVG, whose y grows downwards, the smaller y first. [default: all]
     #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = crate::clip::window)]

@@ -5,6 +5,7 @@ use crate::{color, values};
 use clap::error::Error;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum, ValueHint};
 use durer::map::{Marker, Style};
+use durer_formats::geo::crs::Crs;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -64,6 +65,8 @@ pub struct Layer {
     pub chosen: Option<String>,
     /// Conditions on its features; all must hold.
     pub conditions: Vec<Condition>,
+    /// Its coordinate system, if it is given.
+    pub from_crs: Option<Crs>,
     pub style: Style,
     pub labels: Labels,
     /// True if an option of the style was given for it.
@@ -92,6 +95,11 @@ struct LayerArgs {
     /// If a layer has several, all must hold. Numbers are compared as numbers; a VALUE in quotes is a text.
     #[arg(long = "where", value_name = "FIELD=VALUE", value_parser = condition, help_heading = "Reading")]
     conditions: Vec<Condition>,
+    /// The coordinate system of the layer [default: that of the file; longitude and latitude for GeoJSON]
+    ///
+    /// EPSG:4326 and other codes, robinson, equal-earth, mercator, or a definition as well-known text.
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse, help_heading = "Coordinates")]
+    from_crs: Vec<Crs>,
     /// The colour of areas and markers, or `none` [default: #e3e7e0]
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     fill: Vec<Ink>,
@@ -195,6 +203,7 @@ impl FromArgMatches for Layers {
         let mut common = (Style::default(), Labels::default());
         apply(matches, 0..first, &mut common);
         let of_all: Option<String> = last(matches, "layer", &(0..first));
+        let system_of_all: Option<Crs> = last(matches, "from_crs", &(0..first));
         let for_all: Vec<Condition> = all(matches, "conditions", &(0..first));
         let ends = places.iter().skip(1).copied().chain([usize::MAX]);
         let layers =
@@ -206,7 +215,9 @@ impl FromArgMatches for Layers {
                 let chosen = last(matches, "layer", &(*start..end)).or_else(|| of_all.clone());
                 let own = all(matches, "conditions", &(*start..end));
                 let conditions = for_all.iter().cloned().chain(own).collect();
-                Layer { input, chosen, conditions, style, labels, styled }
+                let own = last(matches, "from_crs", &(*start..end));
+                let from_crs = own.or_else(|| system_of_all.clone());
+                Layer { input, chosen, conditions, from_crs, style, labels, styled }
             });
         Ok(Self(layers.collect()))
     }
@@ -295,6 +306,9 @@ mod tests {
         assert_eq!(look(&found[2]), (name("c"), grey, None));
         let found = layers("x --where n>1 a --where t=x --where u=y b");
         assert_eq!([found[0].conditions.len(), found[1].conditions.len()], [3, 1]);
+        let found = layers("x --from-crs 3857 a b --from-crs EPSG:32632");
+        let code = |l: &Layer| l.from_crs.as_ref().and_then(Crs::code);
+        assert_eq!([code(&found[0]), code(&found[1])], [Some(3857), Some(32632)]);
         let plain = layers("x a");
         assert!(!plain[0].styled && plain[0].style == Style::default());
     }

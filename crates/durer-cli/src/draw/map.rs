@@ -6,14 +6,12 @@ use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, Surface, fonts, is_for_cad, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{FieldArgs, Fields, none_meets};
 use durer::curve::text::Font;
 use durer::map::{self, Label, Map, Style};
 use durer::math::{DVec2, Rect};
 use durer::view::window::{Window, WindowToViewport};
 use durer_formats::drawing::DxfFrame;
-use durer_formats::geo::crs::{Crs, Transform};
-use durer_formats::geo::{Beside, Feature, Reader, System};
+use durer_formats::geo::Feature;
 use durer_formats::svg::no_glyphs;
 use std::time::Instant;
 
@@ -64,7 +62,7 @@ impl Job<'_> {
         let viewport = self.viewport(size)?;
         let mut map = Map::new(target, &window, &viewport).map_err(usage)?;
         if self.args.picture.dxf_units != Some(DxfUnits::Mm) {
-            self.frame = frame(map.screen(), size);
+            self.frame = frame(map.screen(), size, self.systems.unit());
         }
         let mut labels = Vec::new();
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
@@ -140,85 +138,10 @@ impl Job<'_> {
         }
         Ok(())
     }
-
-    fn features(&mut self, given: &Given<'_>) -> Result<Vec<Feature>, Failure> {
-        let name = display_name(&given.layer.input);
-        let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
-        self.messages.progress.stage(|| format!("reading {name}"));
-        let beside = Beside {
-            name: &given.file.name,
-            resources: &*given.file.beside,
-            layer: given.file.layer.as_deref(),
-        };
-        let reader = Reader::with(given.format, &given.file.bytes[..], &beside);
-        let mut reader = reader.map_err(fail)?;
-        let (mut features, mut all) = (Vec::new(), 0_u64);
-        let conditions = given.layer.conditions.clone();
-        let mut fields = Fields::new(&FieldArgs { conditions, ..FieldArgs::default() });
-        while let Some(mut feature) = reader.next_feature().map_err(fail)? {
-            all += 1;
-            if !fields.apply(&mut feature) {
-                continue;
-            }
-            crate::layer::keep(&feature, &self.args.running.work).map_err(|e| fail(e.into()))?;
-            features.push(feature);
-        }
-        let none = (features.is_empty() && all > 0).then(|| none_meets(all));
-        for message in fields.told().into_iter().chain(none) {
-            self.messages.warning(&name, &message);
-            self.report.warnings.push(message);
-        }
-        self.systems.add(&features, &reader.system(), &name);
-        self.warn(&name, reader.warnings());
-        let more = reader.further_warnings();
-        if more > 0 {
-            self.report.warnings.push(format!("and {more} more"));
-        }
-        Ok(features)
-    }
 }
 
-/// Coordinate systems of the layers.
-#[derive(Debug, Default)]
-pub(super) struct Systems {
-    /// The first one that is known, and a layer that is in it.
-    first: Option<(Crs, String)>,
-    /// A layer in another one.
-    other: Option<(Crs, String)>,
-}
-
-impl Systems {
-    /// Adds a layer with the system that its file, or else its first feature, states.
-    fn add(&mut self, features: &[Feature], told: &System, name: &str) {
-        let own = || features.first().and_then(|f| f.srid).map(System::of_code);
-        let told = if told.is_unknown() { own() } else { Some(told.clone()) };
-        let Some(crs) = told.and_then(|told| Crs::of_system(&told).ok()) else { return };
-        match &self.first {
-            None => self.first = Some((crs, name.to_owned())),
-            Some((first, _)) if !Transform::new(first, &crs).is_identity() => {
-                self.other.get_or_insert((crs, name.to_owned()));
-            }
-            Some(_) => {}
-        }
-    }
-
-    /// Returns a warning about layers of several systems.
-    fn told(&self) -> Option<String> {
-        let ((first, name), (other, its)) = (self.first.as_ref()?, self.other.as_ref()?);
-        let shown = |crs: &Crs| match crs.code() {
-            Some(code) => format!("EPSG:{code}"),
-            None => "a system without a number".to_owned(),
-        };
-        let [first, other] = [shown(first), shown(other)];
-        Some(format!(
-            "the layers are in several coordinate systems, {name} in {first} and {its} in {other}, and are drawn as they \
-             are; durer clip --to-crs converts them"
-        ))
-    }
-}
-
-/// Returns the place of a sheet of a size in pixels in the coordinates of the map.
-fn frame(screen: &WindowToViewport, size: (u32, u32)) -> DxfFrame {
+/// Returns the place of a sheet of a size in pixels in the coordinates of the map, whose unit has a length in metres.
+fn frame(screen: &WindowToViewport, size: (u32, u32), unit: Option<f64>) -> DxfFrame {
     let [width, height] = [size.0, size.1].map(f64::from);
     let [pixels_per_unit, ..] = screen.coefficients();
     let units_per_millimetre = PIXELS_PER_MILLIMETRE / pixels_per_unit;
@@ -228,6 +151,7 @@ fn frame(screen: &WindowToViewport, size: (u32, u32)) -> DxfFrame {
     DxfFrame {
         origin: screen.to_world(DVec2::new(0.0, height)),
         units_per_millimetre,
+        unit,
         digits: digits.unwrap_or(MOST_DIGITS),
     }
 }

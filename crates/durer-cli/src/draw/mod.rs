@@ -1,6 +1,7 @@
 //! `durer draw`.
 
 mod args;
+mod features;
 mod fonts;
 mod layers;
 mod map;
@@ -75,16 +76,20 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
                 let message =
                     format!("{}; --background gives it another colour", encoding::FLATTENED);
                 messages.warning(&target.to_string(), &message);
-                report.warnings.push(message);
+                job.report.warnings.push(message);
             }
             encode
         }
     };
+    let skipped = job.skipped;
     drop(messages);
     report.encode_seconds = encode.elapsed().as_secs_f64();
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
-    if args.json { crate::report::print(&report) } else { Ok(()) }
+    if args.json {
+        crate::report::print(&report)?;
+    }
+    if skipped > 0 { Err(Failure::Partial) } else { Ok(()) }
 }
 
 /// A sheet, and its place in a file for CAD.
@@ -189,7 +194,9 @@ struct Job<'a> {
     /// The place of the sheet in a file for CAD.
     frame: DxfFrame,
     /// The coordinate systems of the layers.
-    systems: map::Systems,
+    systems: features::Systems,
+    /// Number of features that cannot be read and are left out.
+    skipped: u64,
 }
 
 /// A file that has been read.
@@ -213,7 +220,7 @@ struct Unpacked {
 impl<'a> Job<'a> {
     fn new(args: &'a DrawArgs, messages: &'a Messages, report: &'a mut Report) -> Self {
         let (frame, systems) = Default::default();
-        Self { args, messages, report, frame, systems }
+        Self { args, messages, report, frame, systems, skipped: 0 }
     }
 }
 

@@ -24,6 +24,15 @@ impl Job<'_> {
         if !given.layer.conditions.is_empty() {
             return Err(Failure::Usage("--where is for map data; an SVG has no fields".to_owned()));
         }
+        if given.layer.from_crs.is_some() || self.args.to_crs.is_some() {
+            let message =
+                "--from-crs and --to-crs are for map data; an SVG has no places on the earth";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        if self.args.skip_failures {
+            let message = "--skip-failures is for map data; an SVG has no features";
+            return Err(Failure::Usage(message.to_owned()));
+        }
         if given.layer.styled || given.layer.style != Style::default() {
             let message = "--fill, --stroke and other styles are for map data; an SVG has its own";
             return Err(Failure::Usage(message.to_owned()));

@@ -1,18 +1,18 @@
 //! From one coordinate system to another: `--from-crs`, `--to-crs`.
 
-use super::Source;
 use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
-use durer_formats::geo::{Feature, Member, System};
+use durer_formats::geo::{Feature, Member, Reader, System};
 use durer_formats::told::counted;
+use std::io::Read;
 
 /// The member for the coordinate system in the older version of GeoJSON, as JSON.
 pub const CRS: &str = "\"crs\"";
 
 /// Returns what is wrong if a file states its system only after its features, which have been taken to be in another
-/// one, and the option of `durer clip` that helps.
-pub fn late(told: Option<&System>, reader: &Source) -> Option<(&'static str, String)> {
+/// one, and the option that helps.
+pub fn late<R: Read>(told: Option<&System>, reader: &Reader<R>) -> Option<(&'static str, String)> {
     let last = reader.system();
     let is_late = told.is_some_and(|told| *told != last)
         && reader.members().iter().any(|member| member.name == CRS);

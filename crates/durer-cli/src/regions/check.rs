@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{open, words};
+use crate::layer::{Condition, FieldArgs, Fields, condition, none_meets, open, words};
 use crate::messages::Messages;
 use crate::options::RunningArgs;
 use crate::values;
@@ -44,6 +44,12 @@ pub struct CheckArgs {
     /// The layer of a TopoJSON or GeoPackage file; of an archive, the file or FILE/LAYER [default: all, as one]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
+    /// Check features whose field satisfies a condition: FIELD=VALUE; also !=, <, <=, >, >= and ~ (contains, ignoring
+    /// case)
+    ///
+    /// If there are several, all must hold. Numbers are compared as numbers; a VALUE in quotes is a text.
+    #[arg(long = "where", value_name = "FIELD=VALUE", value_parser = condition)]
+    pub conditions: Vec<Condition>,
     /// Also compare neighbouring features: overlaps, and points that only one of two neighbours has
     #[arg(long)]
     pub coverage: bool,
@@ -81,6 +87,7 @@ struct Found {
 struct Report {
     version: &'static str,
     input: String,
+    /// Features that were checked.
     features: u64,
     /// Features that are not valid.
     invalid: u64,
@@ -104,10 +111,16 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let version = env!("CARGO_PKG_VERSION");
     let mut report = Report { version, input: name.clone(), ..Report::default() };
     let (mut layer, mut numbers): (Vec<Shapes>, Vec<u64>) = (Vec::new(), Vec::new());
-    while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
-        report.features += 1;
-        let number = report.features;
+    let conditions = args.conditions.clone();
+    let mut fields = Fields::new(&FieldArgs { conditions, ..FieldArgs::default() });
+    let mut number = 0;
+    while let Some(mut feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
+        number += 1;
         messages.progress.stage(|| format!("{number} features"));
+        if !fields.apply(&mut feature) {
+            continue;
+        }
+        report.features += 1;
         let Some(geometry) = &feature.geometry else { continue };
         let before = report.faults_counted();
         let mut parts = Vec::new();
@@ -138,6 +151,11 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     }
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
+    let none = (report.features == 0 && number > 0).then(|| none_meets(number));
+    for message in fields.told().into_iter().chain(none) {
+        messages.warning(&name, &message);
+        report.warnings.push(message);
+    }
     // Features mended or left out during reading count as faults, too.
     let mended = reader.warnings().iter().filter(|warning| !reader.is_note(warning)).count();
     let skipped = reader.skipped().saturating_sub(1);

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::simplify::LineSimplifier;
 use durer::clip::tiles::Tile;
 use durer_formats::geo::GeoFormat;
+use durer_formats::geo::crs::Crs;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -90,6 +91,12 @@ pub struct TilesArgs {
     /// Coordinate system of the input [default: that of the file, which is converted; lonlat if it states none]
     #[arg(long, value_name = "SYSTEM", help_heading = "Reading")]
     pub coordinates: Option<TileCoordinates>,
+    /// The coordinate system of the input [default: that of the file; longitude and latitude for GeoJSON]
+    ///
+    /// EPSG:4326 and other codes, robinson, equal-earth, mercator, or a definition as well-known text. Longitude
+    /// comes before latitude, easting before northing.
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse, conflicts_with = "coordinates", help_heading = "Reading")]
+    pub from_crs: Option<Crs>,
     /// Lines and borders never extend more than half around the world: an edge of more than 180 degrees goes the other
     /// way, across the date line
     #[arg(long, help_heading = "Reading")]

@@ -182,8 +182,7 @@ fn read_file(
             if fields.apply(&mut feature) {
                 placing.convert(&mut feature, || reader.system()).map_err(|why| {
                     Failure::Data(format!(
-                        "{shown}: {why}; durer clip --from-crs --to-crs EPSG:4326 converts it first, or --coordinates \
-                         says what its coordinates are"
+                        "{shown}: {why}; --from-crs says what its coordinates are"
                     ))
                 })?;
                 keep(&feature, &args.running.work).map_err(|e| fail(e.into()))?;
@@ -205,10 +204,9 @@ fn read_file(
         }
         messages.progress.stage(|| format!("{} features", all.read));
     }
-    let stated = placing.told.as_ref().filter(|_| placing.shift.is_some());
+    let stated = placing.told.as_ref().filter(|_| placing.shift.is_some() && !placing.is_given);
     if let Some((why, option)) = late(stated, &reader) {
-        let hint = format!("durer clip {option} writes a file that states it first");
-        return Err(Failure::Data(format!("{shown}: {why}; {hint}")));
+        return Err(Failure::Data(format!("{shown}: {why}; {option} sets their system")));
     }
     let mut told = reader.warnings().to_vec();
     if layers.len() > 1 {
@@ -244,15 +242,24 @@ struct Placing {
     shift: Option<Shift>,
     /// The system that the file states, from the first feature on.
     told: Option<System>,
+    /// True if --from-crs gives the system of all features.
+    is_given: bool,
 }
 
 impl Placing {
     fn new(args: &TilesArgs) -> Self {
         let lonlat = Crs::of_system(&System::LONLAT).ok();
-        let systems = SystemArgs { from_crs: None, to_crs: lonlat };
-        let shift = Shift::new(&systems).filter(|_| args.coordinates.is_none());
-        let coordinates = args.coordinates.unwrap_or(TileCoordinates::Lonlat).into();
-        Self { coordinates, shift, told: None }
+        let from_crs = args.from_crs.clone();
+        let direct = match from_crs.as_ref().and_then(Crs::code) {
+            Some(MERCATOR) => Some(TileCoordinates::Mercator),
+            Some(4326) => Some(TileCoordinates::Lonlat),
+            _ => args.coordinates,
+        };
+        let is_given = from_crs.is_some();
+        let systems = SystemArgs { from_crs, to_crs: lonlat };
+        let shift = Shift::new(&systems).filter(|_| direct.is_none());
+        let coordinates = direct.unwrap_or(TileCoordinates::Lonlat).into();
+        Self { coordinates, shift, told: None, is_given }
     }
 
     /// Converts a feature to longitudes and latitudes if its file or itself states another system.
@@ -265,6 +272,12 @@ impl Placing {
         system: impl Fn() -> System,
     ) -> Result<(), String> {
         let Some(shift) = &mut self.shift else { return Ok(()) };
+        if self.is_given {
+            if !shift.apply(feature).map_err(|failure| failure.to_string())? {
+                feature.geometry = None;
+            }
+            return Ok(());
+        }
         let told = self.told.get_or_insert_with(|| {
             let told = system();
             shift.begin(told.clone());

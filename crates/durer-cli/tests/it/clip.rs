@@ -444,7 +444,7 @@ fn wrong_use_and_bad_data_are_told() {
     folder.run("clip none.geojson --window 0,0,1,1 -o a.wkt").fails(1, "none.geojson: ");
     folder
         .run("clip bad.geojsonl --window 0,0,9,9 -o old.geojsonl")
-        .fails(1, "bad.geojsonl: line 2, column 34: ");
+        .fails(1, "bad.geojsonl: line 2, column 34, feature 2: ");
     assert_eq!(folder.read("old.geojsonl"), b"old");
     assert_eq!(folder.names(), ["bad.geojsonl", "in.geojson", "old.geojsonl"]);
     piped(&folder, "clip - --window 0,0,1,1 -o -", b"")

@@ -300,11 +300,12 @@ fn systems_that_geojson_states_are_converted_from() {
     }
     let many = late.replace(&feature, &[&feature[..]; 300].join(","));
     folder.write("many.geojson", many);
-    for command in ["fix many.geojson -o l.shp", "tiles late.geojson -o l.pmtiles"] {
-        let told = "durer clip --from-crs EPSG:3857 writes a file that states it";
-        folder.run(command).fails(1, told);
+    let told = "durer clip --from-crs EPSG:3857 writes a file that states it";
+    folder.run("fix many.geojson -o l.shp").fails(1, told);
+    for command in ["tiles late.geojson -o l.pmtiles", "draw late.geojson --to-crs 3035 -o l.png"] {
+        folder.run(command).fails(1, "; --from-crs EPSG:3857 sets their system");
     }
-    for name in ["l.shp", "l.geojson", "l.pmtiles"] {
+    for name in ["l.shp", "l.geojson", "l.pmtiles", "l.png"] {
         assert!(!folder.path(name).exists(), "{name}");
     }
     folder.must("clip late.geojson --from-crs 3857 --to-crs EPSG:4326 -o l.geojson");

@@ -359,7 +359,7 @@ fn maps_for_cad_have_the_coordinates_of_the_map() {
     };
     near(values(10), [500_000.25, 500_010.0, 500_010.0]);
     near(values(20), [5_400_000.5, 5_400_000.5, 5_400_020.0]);
-    // Unknown units; dashes keep their size on the sheet, where the longer side of the window is 400 pixels.
+    // Nothing tells the units; dashes keep their size on the sheet, where the longer side of the window is 400 pixels.
     let after = |name: &str| {
         let at = dxf.find(name).expect("a variable");
         dxf[at..].lines().nth(2).expect("a value").trim().parse::<f64>().expect("a number")
@@ -369,6 +369,26 @@ fn maps_for_cad_have_the_coordinates_of_the_map() {
     assert!(lower < 500_000.25 && upper > 500_010.0, "{lower} {upper}");
     let sheet = 200.0 * 25.4 / 96.0;
     assert!((after("$LTSCALE") - (upper - lower) / sheet).abs() < 1e-9);
+    let units = |options: &str| {
+        folder.must(&format!("draw utm.geojson -o b.dxf {options}"));
+        let dxf = String::from_utf8(folder.read("b.dxf")).expect("ASCII");
+        let at = dxf.find("$INSUNITS").expect("a variable");
+        dxf[at..].lines().nth(2).map(|line| line.trim().to_owned())
+    };
+    let feet = |length: f64| {
+        let geographic = r#"GEOGCS["G",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["Degree",0.0174532925199433]]"#;
+        let projection = r#"PROJECTION["Transverse_Mercator"],PARAMETER["Central_Meridian",9]"#;
+        format!(r#"--from-crs PROJCS["P",{geographic},{projection},UNIT["Foot",{length}]]"#)
+    };
+    for (options, number) in [
+        ("--from-crs EPSG:32632".to_owned(), "6"),
+        ("--from-crs EPSG:32632 --dxf-units mm".to_owned(), "4"),
+        ("--from-crs EPSG:32632 --to-crs EPSG:4326".to_owned(), "0"),
+        (feet(0.3048), "2"),
+        (feet(0.304_800_609_601_219_2), "21"),
+    ] {
+        assert_eq!(units(&options).as_deref(), Some(number), "{options}");
+    }
     folder.write("a.svg", SVG);
     folder.run("draw a.svg -o b.dxf --dxf-units map").fails(2, "an SVG has no map's coordinates");
     folder.run("draw utm.geojson -o b.svg --dxf-units map").fails(2, "it is for .dxf files");
@@ -414,4 +434,48 @@ fn layers_in_several_systems_are_told() {
     );
     folder.write("c.wkt", "SRID=4258;POINT (9 48)\nPOINT (8 47)");
     assert_eq!(folder.must("draw a.geojson c.wkt -o a.png").err, "");
+}
+
+#[test]
+fn layers_of_several_systems_are_drawn_in_one() {
+    let folder = Folder::new();
+    let square = |side: f64| {
+        format!("SRID=4326;POLYGON ((9 48, {0} 48, {0} {1}, 9 {1}, 9 48))", 9.0 + side, 48.0 + side)
+    };
+    folder.write("a.wkt", square(1.0));
+    folder.must("clip a.wkt --to-crs EPSG:32632 -o utm.csv");
+    let view =
+        "--window 490000,5300000,600000,5440000 --size 200x --fill black --stroke none --aa none";
+    let draw = |layers: &str, options: &str| {
+        folder.must(&format!("draw {view} {layers} {options} -o o.png"));
+        folder.read("o.png")
+    };
+    let (direct, converted) = (draw("utm.csv", ""), draw("a.wkt", "--to-crs EPSG:32632"));
+    assert!(direct == converted, "the window is in the new system");
+    let both = draw("a.wkt utm.csv --from-crs EPSG:32632", "--to-crs EPSG:32632");
+    assert!(both == converted, "--from-crs is that of the layer before it");
+    let ended = folder.run("draw utm.csv --to-crs EPSG:4326 -o o.png");
+    ended.fails(2, "utm.csv: --to-crs: ");
+    assert!(ended.err.contains("--from-crs sets the system of the input"), "{}", ended.err);
+    let ended = folder.must("draw a.wkt utm.csv --from-crs EPSG:32632 -o o.png");
+    assert!(ended.err.contains("; --to-crs converts them"), "{}", ended.err);
+    folder.write("p.wkt", "SRID=4326;POINT (0 90)\nSRID=4326;POINT (0 0)");
+    let ended = folder.must("draw p.wkt --to-crs 3857 -o o.png --json");
+    assert_eq!(ended.json()["layers"][0]["map"]["features"], 1, "{}", ended.err);
+    assert!(ended.err.contains("1 feature reaches beyond the area of EPSG:3857"), "{}", ended.err);
+    folder.write("a.svg", SVG);
+    folder.run("draw a.svg --to-crs 3857 -o o.png").fails(2, "--to-crs are for map data");
+    folder.run("draw a.svg --skip-failures -o o.png").fails(2, "--skip-failures is for map data");
+}
+
+#[test]
+fn broken_features_are_left_out_of_maps_on_request() {
+    let folder = Folder::new();
+    folder.write("a.wkt", "POINT (1 2)\nPOINT (3\nPOINT (5 6)\n");
+    folder.run("draw a.wkt -o a.png").fails(1, "line 3, column 1, feature 2: ");
+    assert!(!folder.path("a.png").exists());
+    let ended = folder.run("draw a.wkt -o a.png --skip-failures --json");
+    ended.fails(3, "1 feature cannot be read and is left out: ");
+    assert_eq!(ended.json()["layers"][0]["map"]["points"], 2);
+    assert!(folder.path("a.png").exists(), "the rest is drawn");
 }

@@ -152,9 +152,9 @@ fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
 fn broken_features_are_faults_or_left_out() {
     let folder = Folder::new();
     folder.write("a.csv", "id,WKT\n1,POINT (1 2)\n2,POINT (1\n3,POINT (3\n4,POINT (5 6)\n");
-    folder.run("clip a.csv -o o.geojson").fails(1, "a.csv: line 3: ");
+    folder.run("clip a.csv -o o.geojson").fails(1, "a.csv: line 3, feature 2: ");
     assert!(!folder.path("o.geojson").exists());
-    let told = "a.csv: line 3: 2 features cannot be read and are left out; the first: ";
+    let told = "a.csv: line 3, feature 2: 2 features cannot be read and are left out; the first: ";
     for command in ["clip a.csv", "fix a.csv", "tiles a.csv --zoom 0"] {
         let out = if command.starts_with("tiles") { "o.pmtiles" } else { "o.geojson" };
         let ended = folder.run(&format!("{command} -o {out} --skip-failures"));
@@ -169,4 +169,23 @@ fn broken_features_are_faults_or_left_out() {
     let checked = folder.run("check a.csv --json");
     checked.fails(1, "2 reading");
     assert_eq!(checked.json()["counts"]["reading"], 2);
+}
+
+#[test]
+fn features_that_meet_conditions_are_checked() {
+    let folder = Folder::new();
+    let ring = |kind: &str, x: u32| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"k":"{kind}"}},"geometry":{{"type":"Polygon","coordinates":[[[0,0],[{x},9],[9,0],[0,9],[0,0]]]}}}}"#
+        )
+    };
+    let whole = ring("a", 0).replace("[0,9],[9,0],[0,9],", "[9,0],[9,9],");
+    folder.write("a.geojsonl", [whole, ring("b", 9), ring("b", 8)].join("\n"));
+    let told = folder.must("check a.geojsonl --where k=a --json").json();
+    assert_eq!((&told["features"], &told["valid"]), (&1.into(), &true.into()));
+    let ended = folder.run("check a.geojsonl --where k=b --json");
+    assert_eq!(ended.json()["invalid"], 2, "{}", ended.err);
+    assert_eq!(ended.json()["faults"][0]["feature"], 2, "numbers are those in the file");
+    let ended = folder.must("check a.geojsonl --where k=c");
+    assert!(ended.err.contains("3 features were read, and none meets --where"), "{}", ended.err);
 }

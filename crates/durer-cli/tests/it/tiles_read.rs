@@ -29,7 +29,22 @@ fn files_in_other_systems_are_converted() {
     folder.write("odd.wkt", "SRID=21781;POINT (600000 200000)");
     let refused = folder.run("tiles odd.wkt -o d.pmtiles");
     refused.fails(1, "odd.wkt: ");
-    assert!(refused.err.contains("--coordinates"), "{}", refused.err);
+    assert!(refused.err.contains("--from-crs says what"), "{}", refused.err);
+    // So does the option for any system.
+    let read = |name: &str| -> Value {
+        let tile: Value = serde_json::from_slice(&folder.read(name)).expect("JSON");
+        tile["features"][0]["geometry"].clone()
+    };
+    for code in [25832, 3857, 4326] {
+        folder.must(&format!("clip a.geojson --to-crs EPSG:{code} -o bare.csv"));
+        folder.must(&format!(
+            "tiles bare.csv -o e/{{z}}/{{x}}/{{y}}.geojson --zoom 6 --from-crs EPSG:{code}"
+        ));
+        assert_eq!(read("e/6/33/22.geojson"), read("a/6/33/22.geojson"), "{code}");
+    }
+    folder
+        .run("tiles bare.csv -o f.pmtiles --from-crs 3857 --coordinates lonlat")
+        .fails(2, "cannot be used with");
 }
 
 #[test]

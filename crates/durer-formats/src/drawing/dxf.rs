@@ -80,9 +80,9 @@ fn header(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions, seed: u32) {
     tags.tag(9, "$LIMMAX").place(10, sheet.size);
     // Line types have millimetres of the sheet.
     tags.tag(9, "$LTSCALE").length(40, 1.0);
-    // Line weights are shown; lengths are metric, in millimetres or in units that are not known.
+    // Line weights are shown; patterns and line types are metric.
     tags.tag(9, "$LWDISPLAY").int(290, 1);
-    let units = if tags.frame.is_sheet() { 4 } else { 0 };
+    let units = tags.frame.insertion_units();
     tags.tag(9, "$INSUNITS").int(70, units);
     tags.tag(9, "$MEASUREMENT").int(70, 1);
     dimensions.variables(tags);

@@ -27,6 +27,25 @@ pub(super) const PAPER: u32 = 0x1b;
 /// First of the handles that are given out in order.
 pub(super) const FIRST: u32 = 0x30;
 
+/// Lengths in metres with their numbers in `$INSUNITS`: inches, feet, millimetres, centimetres, metres, kilometres,
+/// yards, and feet of the United States' survey.
+const UNITS: [(f64, i64); 8] = [
+    (0.0254, 1),
+    (FOOT, 2),
+    (0.001, 4),
+    (0.01, 5),
+    (1.0, 6),
+    (1000.0, 7),
+    (0.9144, 10),
+    (SURVEY_FOOT, 21),
+];
+
+/// The international foot in metres.
+const FOOT: f64 = 0.3048;
+
+/// The foot of the United States' survey in metres.
+const SURVEY_FOOT: f64 = 1200.0 / 3937.0;
+
 /// Entity type of strokes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DxfStrokes {
@@ -45,6 +64,8 @@ pub struct DxfFrame {
     /// Units of the file per millimetre of the sheet, > 0. Line weights are millimetres in any frame, and dashes have the
     /// lengths that they have on the sheet.
     pub units_per_millimetre: f64,
+    /// Length of a unit of the file in metres; `None` if units are no lengths, such as degrees, or are not known.
+    pub unit: Option<f64>,
     /// Number of digits after the point.
     pub digits: usize,
 }
@@ -52,7 +73,7 @@ pub struct DxfFrame {
 impl Default for DxfFrame {
     /// Returns the frame in millimetres from the sheet's corner: micrometres are the last digit.
     fn default() -> Self {
-        Self { origin: DVec2::ZERO, units_per_millimetre: 1.0, digits: 6 }
+        Self { origin: DVec2::ZERO, units_per_millimetre: 1.0, unit: Some(0.001), digits: 6 }
     }
 }
 
@@ -60,6 +81,12 @@ impl DxfFrame {
     /// Returns whether the file's units are millimetres from the sheet's corner.
     pub(super) fn is_sheet(&self) -> bool {
         (self.origin, self.units_per_millimetre) == (DVec2::ZERO, 1.0)
+    }
+
+    /// Returns the unit of the file by its number in `$INSUNITS`: 0 if it has none.
+    pub(super) fn insertion_units(&self) -> i64 {
+        let is = |length: f64| self.unit.is_some_and(|unit| (unit / length - 1.0).abs() < 1e-7);
+        UNITS.iter().find(|(length, _)| is(*length)).map_or(0, |(_, number)| *number)
     }
 
     /// Returns a place that is given in millimetres from the lower left corner of the sheet.

@@ -3,6 +3,7 @@
 use super::geojson::finish_line;
 use super::markup::{MIXED, push};
 use super::members::{object, quoted};
+use super::numbered::Label;
 use super::{Feature, Geometry, Member, Points, Warnings};
 use crate::collada::document::Document;
 use crate::text::Tally;
@@ -35,6 +36,7 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
     };
     let mut features = Vec::new();
     for element in reader.document.children(root).collect::<Vec<_>>() {
+        let from = warnings.kept.len();
         let (kind, geometry) = match reader.document.name(element) {
             "wpt" => ("waypoint", Geometry::Point(reader.points([element].into_iter()))),
             "rte" => ("route", Geometry::LineString(reader.line(element, "rtept", warnings))),
@@ -48,7 +50,12 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
         };
         let properties = Some(object(&reader.fields(element, kind)));
         let (geometry, srid) = (Some(geometry), Some(4326));
-        features.push(Feature { geometry, properties, srid, ..Feature::default() });
+        let feature = Feature { geometry, properties, srid, ..Feature::default() };
+        let label = || Label::of(features.len() as u64 + 1, &feature);
+        warnings.label(from, label);
+        let Reader { places, times, mixed, .. } = &mut reader;
+        [places, times, mixed].into_iter().for_each(|tally| tally.label(label));
+        features.push(feature);
     }
     warnings.add_counted(reader.mixed, MIXED[0], MIXED[1]);
     warnings.add_counted(

@@ -5,6 +5,7 @@
 use super::geojson::{finish_line, finish_ring};
 use super::markup::{MIXED, push};
 use super::members::{object, quoted};
+use super::numbered::Label;
 use super::{Feature, Geometry, MAX_DEPTH, Member, Points, Warnings};
 use crate::collada::document::Document;
 use crate::text::Tally;
@@ -32,7 +33,13 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
     for element in reader.document.inside(root).collect::<Vec<_>>() {
         let name = reader.document.name(element).to_owned();
         if name == "Placemark" {
-            features.push(reader.placemark(element, warnings)?);
+            let (number, from) = (features.len() as u64 + 1, warnings.kept.len());
+            features.push(reader.placemark(element, number, warnings)?);
+            if let Some(feature) = features.last() {
+                let label = || Label::of(number, feature);
+                warnings.label(from, label);
+                reader.faults.label(label);
+            }
         } else if LEFT_OUT.contains(&&name[..]) {
             let place = reader.document.place(element);
             reader.faults.others.add(|| place);
@@ -53,6 +60,12 @@ struct Faults {
 }
 
 impl Faults {
+    /// Adds the feature that has just been read to the places of its faults.
+    fn label(&mut self, label: impl Fn() -> Label) {
+        let Self { models, coordinates, mixed, times, .. } = self;
+        [models, coordinates, mixed, times].into_iter().for_each(|tally| tally.label(&label));
+    }
+
     fn tell(self, warnings: &mut Warnings) {
         for (tally, [one, several]) in [
             (
@@ -129,15 +142,22 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn placemark(&mut self, element: usize, warnings: &mut Warnings) -> Result<Feature> {
+    fn placemark(
+        &mut self,
+        element: usize,
+        number: u64,
+        warnings: &mut Warnings,
+    ) -> Result<Feature> {
         let document = &self.document;
         let id = document.attribute(element, "id").map(quoted);
         let properties = Some(object(&self.fields(element)));
-        let mut geometry = None;
+        let mut feature = Feature { id, properties, srid: Some(4326), ..Feature::default() };
         for child in document.children(element).collect::<Vec<_>>() {
-            geometry = geometry.or(self.geometry(child, 0, warnings)?);
+            let found = self.geometry(child, 0, warnings);
+            let found = found.map_err(|error| error.in_feature(&Label::of(number, &feature)))?;
+            feature.geometry = feature.geometry.or(found);
         }
-        Ok(Feature { id, properties, geometry, srid: Some(4326), ..Feature::default() })
+        Ok(feature)
     }
 
     fn fields(&self, element: usize) -> Vec<Member> {

@@ -36,6 +36,7 @@ mod kml;
 mod markup;
 mod members;
 pub(crate) mod number;
+mod numbered;
 mod reader;
 mod schema;
 mod shapefile;

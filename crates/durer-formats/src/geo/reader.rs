@@ -1,6 +1,7 @@
 //! Features from bytes in any format.
 
 use super::beside::{Beside, MAX_BYTES};
+use super::numbered::Label;
 use super::{
     Feature, GeoFormat, Member, System, Warnings, csv, flatgeobuf, geojson, geopackage, geoparquet,
     gpx, kml, shapefile, svg_shapes, topojson, wkb, wkt,
@@ -23,6 +24,8 @@ pub struct Reader<R> {
     layers: Vec<String>,
     /// True once a feature has been read.
     begun: bool,
+    /// Number of features that have been read or left out, of formats that do not count them themselves.
+    count: u64,
     /// True if features that cannot be read are left out.
     skips: bool,
     /// Features that have been left out for it, with the reason for the first.
@@ -61,6 +64,16 @@ impl<R: Read> Source<R> {
         match self {
             Self::GeoJson(reader) => reader.goes_on(),
             Self::Wkt(..) | Self::WkbHex(..) | Self::Csv(_) | Self::Shapefile(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Returns whether places already name features, rows, or layers and rows, or are not those of features.
+    fn tells_features(&self) -> bool {
+        match self {
+            Self::GeoJson(_) | Self::Shapefile(_) | Self::Held(_) => true,
+            Self::GeoPackage(_) | Self::GeoParquet(_) | Self::Svg(_) => true,
+            Self::FlatGeobuf(reader) => reader.is_chosen(),
             _ => false,
         }
     }
@@ -132,6 +145,7 @@ impl<R: Read> Reader<R> {
             members,
             layers,
             begun: false,
+            count: 0,
             skips: false,
             skipped: Skipped::default(),
         })
@@ -214,7 +228,18 @@ impl<R: Read> Reader<R> {
         }
     }
 
+    /// Returns the next feature, and tells in which one faults are.
     fn next_of_source(&mut self) -> Result<Option<Feature>> {
+        if self.source.tells_features() {
+            return self.next_unlabelled();
+        }
+        let from = self.warnings.kept.len();
+        self.count += 1;
+        let next = self.next_unlabelled();
+        self.warnings.labelled(next, Label::bare(self.count), from)
+    }
+
+    fn next_unlabelled(&mut self) -> Result<Option<Feature>> {
         match &mut self.source {
             Source::GeoJson(reader) => {
                 let feature = reader.next_feature();

@@ -150,11 +150,11 @@ fn errors_of_geojson_say_where() {
         ("{\"type\":\"Topology\"}", "TopoJSON within GeoJSON is not supported"),
         (
             "{\"type\":\"Feature\",\"properties\":[],\"geometry\":null}",
-            "line 1, column 32: properties",
+            "line 1, column 32, feature 1: properties",
         ),
         (
             "{\"type\":\"Feature\",\"properties\":{\"a\":tru},\"geometry\":null}",
-            "line 1, column 40: a value is expected",
+            "line 1, column 40, feature 1: a value is expected",
         ),
         ("{\"type\":\"FeatureCollection\",\"features\":[{\"type\":", "ends within a value"),
         ("{\"features\":[]}", "line 1, column 1: an object with features"),
@@ -169,7 +169,11 @@ fn errors_of_geojson_say_where() {
 fn repairs_are_told() {
     let polygon = |rings: &str| format!("{{\"type\":\"Polygon\",\"coordinates\":[{rings}]}}");
     for (text, rings, told) in [
-        (polygon("[[0,0],[4,0],[4,4]]"), 1, "line 1, column 34: the ring is not closed; closed"),
+        (
+            polygon("[[0,0],[4,0],[4,4]]"),
+            1,
+            "line 1, column 34, feature 1: the ring is not closed; closed",
+        ),
         (polygon("[[0,0],[4,0],[0,0]]"), 0, "a ring needs four positions"),
         (polygon("[[0,0],[4,0],[0,0]],[[1,1],[2,1],[2,2],[1,1]]"), 0, "left out too"),
     ] {
@@ -209,15 +213,18 @@ GEOMETRYCOLLECTION(POINT(1 2),LINESTRING(0 0,1 1))\nPOLYGON((0 0,4 0,4 4,0 0),(1
     for (text, expected) in [
         (
             "POINT (1 2)\nPOINT (1)",
-            "line 2, column 9: a position of 2 numbers is expected, this one has 1",
+            "line 2, column 9, feature 2: a position of 2 numbers is expected, this one has 1",
         ),
-        ("POINT (1 nan)", "line 1, column 10: coordinates must be finite"),
+        ("POINT (1 nan)", "line 1, column 10, feature 1: coordinates must be finite"),
         ("POLYGON ((0 0, 1 1", "the end of the file"),
         ("LINESTRING (0 0, 1 1 2)", "this one has 3"),
-        ("CIRCULARSTRING (0 0, 1 1)", "line 1, column 16: arcs need an odd number of positions"),
-        ("CURVE (0 0, 1 1, 2 0)", "line 1, column 1: `CURVE` is not a type"),
-        ("BLOB (1 2)", "line 1, column 1: `BLOB` is not a type"),
-        ("POINT (1 2))", "line 1, column 12: the end of the geometry"),
+        (
+            "CIRCULARSTRING (0 0, 1 1)",
+            "line 1, column 16, feature 1: arcs need an odd number of positions",
+        ),
+        ("CURVE (0 0, 1 1, 2 0)", "line 1, column 1, feature 1: `CURVE` is not a type"),
+        ("BLOB (1 2)", "line 1, column 1, feature 1: `BLOB` is not a type"),
+        ("POINT (1 2))", "line 1, column 12, feature 1: the end of the geometry"),
     ] {
         let message = error(GeoFormat::Wkt, text.as_bytes());
         assert!(message.contains(expected), "{text}: {message}");
@@ -244,13 +251,19 @@ fn wkb_of_both_byte_orders_and_postgis_is_read() {
         assert_eq!(String::from_utf8_lossy(&text).trim(), expected, "{hex}");
     }
     for (hex, expected) in [
-        ("0102000000FFFFFFFF", "column 11: a count of 4294967295, but only 0 bytes are left"),
-        ("0101000000", "line 1, column 11: the data end"),
+        (
+            "0102000000FFFFFFFF",
+            "column 11, feature 1: a count of 4294967295, but only 0 bytes are left",
+        ),
+        ("0101000000", "line 1, column 11, feature 1: the data end"),
         ("010D000000", "type 13 is not supported"),
         ("05", "byte order 5"),
         ("01010000000000000000F07F0000000000000040", "the data end"),
-        ("0101000000000000000000F07F0000000000000040", "column 11: coordinates must be finite"),
-        ("01zz", "column 3: two hexadecimal digits"),
+        (
+            "0101000000000000000000F07F0000000000000040",
+            "column 11, feature 1: coordinates must be finite",
+        ),
+        ("01zz", "column 3, feature 1: two hexadecimal digits"),
     ] {
         let message = error(GeoFormat::WkbHex, hex.as_bytes());
         assert!(message.contains(expected), "{hex}: {message}");
@@ -507,7 +520,10 @@ fn many_small_things_take_no_longer_than_few_large_ones() {
     let words = format!("<svg>{}</svg>", "<text>a</text>\n".repeat(200_000));
     assert_eq!(read_all(words.as_bytes(), "").expect("read").1.len(), 1000);
     let late = format!("{points}POINT (1)");
-    assert!(error(GeoFormat::Wkt, late.as_bytes()).starts_with("line 200001, column 9:"));
+    assert!(
+        error(GeoFormat::Wkt, late.as_bytes())
+            .starts_with("line 200001, column 9, feature 200001:")
+    );
 }
 
 #[test]
@@ -704,4 +720,56 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn errors_and_warnings_name_the_feature() {
+    let ring = |id: &str, name: &str, ring: &str| {
+        format!(
+            r#"{{"type":"Feature",{id}"properties":{{"Name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}}"#
+        )
+    };
+    let (open, whole) = ("[[0,0],[4,0],[4,4]]", "[[0,0],[4,0],[4,4],[0,0]]");
+    let all = [ring("", "a", whole), ring("", "b", open), ring("\"id\":7,", "c", open)];
+    let (_, warnings) = read_all(all.join("\n").as_bytes(), "").expect("read");
+    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(told[0].starts_with("line 2, column 89, feature 2 (Name b): the ring"), "{told:?}");
+    assert!(told[1].contains(", feature 3 (id 7): the ring is not closed"), "{told:?}");
+
+    let collection = |features: &str| {
+        format!(r#"{{"type":"FeatureCollection","crs":{{"a":1}},"features":[{features}]}}"#)
+    };
+    let broken = ring("\"id\":\"x\",", "d", "[[0,0],[4]]");
+    let text = collection(&format!("{},{broken}", all[0]));
+    let told = error(GeoFormat::GeoJson, text.as_bytes());
+    assert!(told.contains(", feature 2 (id x): a position needs"), "{told}");
+    let (_, warnings) = read_all(collection(&all[1]).as_bytes(), "").expect("read");
+    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(told[0].contains("column 35: the member crs"), "not of a feature: {told:?}");
+    assert!(told[1].contains("feature 1 (Name b)"), "{told:?}");
+    // Behind the features there is none.
+    let told = error(
+        GeoFormat::GeoJson,
+        text.replace("[4]]", "[4,0],[4,4],[0,0]]").replace("]}", "];").as_bytes(),
+    );
+    assert!(!told.contains("feature 3"), "{told}");
+
+    let kml = "<kml><Placemark id='p1'><Point><coordinates>1,2</coordinates></Point></Placemark>\n\
+        <Placemark><name>Weg</name><LineString><coordinates>1,2</coordinates></LineString></Placemark>\n\
+        <Placemark id='p3'><Point><coordinates>1,b</coordinates></Point></Placemark></kml>";
+    let (_, warnings) = read_all(kml.as_bytes(), "").expect("read");
+    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(told[0].contains(", feature 2 (name Weg): a line needs two positions"), "{told:?}");
+    assert!(told[1].contains(", feature 3 (id p3): 1 coordinate is not a number"), "{told:?}");
+    let gpx = "<gpx><wpt lat='1' lon='2'/><rte><name>R</name><rtept lat='1' lon='2'/></rte></gpx>";
+    let (_, warnings) = read_all(gpx.as_bytes(), "").expect("read");
+    assert!(warnings[0].to_string().contains("feature 2 (name R): a line needs"), "{warnings:?}");
+
+    let topology = r#"{"type":"Topology","arcs":[[[0,0],[1,1]]],"objects":{"o":{"type":"GeometryCollection","geometries":[
+        {"type":"LineString","arcs":[0]},{"type":"LineString","id":"k","arcs":[9]}]}}}"#;
+    let told = read_all(topology.as_bytes(), "").expect_err("no arc").to_string();
+    assert!(told.starts_with("line 2, column 80, feature 2 (id k): there are 1 arcs"), "{told}");
+    let table = "name,wkt\nA,POINT (1 2)\nB,POINT (1)\n";
+    let told = error(GeoFormat::Csv, table.as_bytes());
+    assert!(told.starts_with("line 3, feature 2: a position of 2 numbers"), "{told}");
 }

@@ -33,7 +33,9 @@ CURVEPOLYGON Z EMPTY";
     assert_eq!(kinds, expected.map(|(kind, count)| (kind.to_owned(), count)));
     assert_eq!(
         warnings,
-        ["line 1, column 1: 6 curves are flattened to lines of 32 edges per quarter turn"]
+        [
+            "line 1, column 1, feature 1: 6 curves are flattened to lines of 32 edges per quarter turn"
+        ]
     );
 }
 

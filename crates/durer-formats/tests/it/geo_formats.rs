@@ -96,7 +96,9 @@ fn columns_of_csv_are_numbers_only_where_all_are() {
     assert!(
         error(b"a,b\n1,2\n", "a.csv").contains("no column is known to hold geometries among a, b")
     );
-    assert!(error(b"a,wkt\n\n1,POINT (1)\n", "a.csv").starts_with("line 3: a position of 2"));
+    assert!(
+        error(b"a,wkt\n\n1,POINT (1)\n", "a.csv").starts_with("line 3, feature 1: a position of 2")
+    );
     // Latin-1, as spreadsheets write it.
     let (features, _) = read(b"lon,lat,n\n1,2,M\xfcnchen\n", "a.csv");
     assert_eq!(features[0].properties.as_deref(), Some("{\"n\":\"München\"}"));
@@ -136,7 +138,11 @@ POLYGON ((11 20.5, 11 20, 10 20, 12 20.5, 11 20.5))\nPOINT (11 21)\n"
     );
     assert!(open("c").err().expect("none").to_string().contains("no layer c; it has b, a"));
     for (from, to, told) in [
-        ("[[0,1]]", "[[0,9]]", "line 3, column 60: there are 3 arcs, and none of this number"),
+        (
+            "[[0,1]]",
+            "[[0,9]]",
+            "line 3, column 60, feature 1 (id 7): there are 3 arcs, and none of this number",
+        ),
         ("[[0,1]]", "[[0,0.5]]", "none of this number"),
         (
             "\"arcs\":[[[0,0]",
@@ -255,7 +261,7 @@ MULTILINESTRING ((0 0, 1 1), (2 2, 3 3))\nLINESTRING Z (1 2 3, 4 5 6)\nPOINT (7 
         warnings,
         [
             "line 10, column 10: 2 overlays and links to other files are left out",
-            "line 8, column 12: 2 moments of tracks are left out; the places are kept"
+            "line 8, column 12, feature 3: 2 moments of tracks are left out; the places are kept"
         ]
     );
 }

@@ -49,7 +49,7 @@ fn values_that_json_lacks_are_null_with_a_warning() {
     assert_eq!(
         warnings,
         [
-            "line 1, column 32: 2 values are NaN or Infinity, which JSON does not have; they are null"
+            "line 1, column 32, feature 1: 2 values are NaN or Infinity, which JSON does not have; they are null"
         ]
     );
     let wrong = text.replace("\"c\":1", "\"c\":nan");
@@ -182,27 +182,27 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
         (
             GeoFormat::GeoJson,
             format!(r#"{{"type":"FeatureCollection","features":[{a},{bad},{bad},{b}]}}"#),
-            "line 1, column 202: 2 features cannot be read and are left out; the first: a number is expected",
+            "line 1, column 202, feature 2: 2 features cannot be read and are left out; the first: a number is expected",
         ),
         (
             GeoFormat::GeoJsonSeq,
             format!("{a}\n{bad}\n{{\"type\":\"Nothing\"}}\n{b}\n"),
-            "line 2, column 79: 2 features",
+            "line 2, column 79, feature 2: 2 features",
         ),
         (
             GeoFormat::Csv,
             "WKT\nPOINT (1 0)\nPOINT (1\nPOINT 3\nPOINT (2 0)\n".to_owned(),
-            "line 3: 2 features",
+            "line 3, feature 2: 2 features",
         ),
         (
             GeoFormat::Wkt,
             "POINT (1 0)\nPOINT (1\n\nPOINT (x 2)\nPOINT (2 0)\n".to_owned(),
-            "line 4, column 1: 2 features",
+            "line 4, column 1, feature 2: 2 features",
         ),
         (
             GeoFormat::WkbHex,
             format!("{}\n01010000\nzz\n{}\n", hex(0xf0), hex(0xf8)),
-            "line 2, column 3: 2 features",
+            "line 2, column 3, feature 2: 2 features",
         ),
     ];
     for (format, text, told) in cases {

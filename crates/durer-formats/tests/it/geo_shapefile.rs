@@ -187,7 +187,7 @@ fn what_is_missing_or_broken_is_told() {
     let mut reader =
         Reader::with(GeoFormat::Shapefile, &files.0["a.shp"][..], &beside).expect("a reader");
     let told = reader.next_feature().expect_err("a shape of no kind").to_string();
-    assert!(told.starts_with("byte 108: a shape of the kinds"), "{told}");
+    assert!(told.starts_with("byte 108, feature 1: a shape of the kinds"), "{told}");
 }
 
 #[test]

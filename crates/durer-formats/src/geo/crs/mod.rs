@@ -115,6 +115,14 @@ impl Crs {
         self.kind == Kind::Geographic
     }
 
+    /// Returns the length of a unit of the coordinates in metres; `None` for longitude and latitude.
+    pub fn unit(&self) -> Option<f64> {
+        match self.kind {
+            Kind::Geographic => None,
+            Kind::Projected { unit, .. } => Some(unit),
+        }
+    }
+
     fn to_radians(&self, p: DVec2) -> Option<(f64, f64)> {
         match &self.kind {
             Kind::Geographic => {

@@ -74,6 +74,11 @@ impl Reader {
         self.chosen = found.into_iter().rev().map(at).collect();
     }
 
+    /// Returns whether only some features are read, so that their numbers are unknown.
+    pub fn is_chosen(&self) -> bool {
+        self.chosen.is_some()
+    }
+
     /// Returns the next feature; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         if let Some(chosen) = &mut self.chosen {

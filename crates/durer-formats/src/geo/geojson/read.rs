@@ -3,6 +3,7 @@
 use super::coordinates::{Geometries, further_members};
 use super::object::{RawMember, Text, kind};
 use super::scan::{Progress, Scan};
+use crate::geo::numbered::{Label, name};
 use crate::geo::system::{self, System};
 use crate::geo::{Feature, Member, Warnings};
 use crate::{Error, Place, Result};
@@ -155,6 +156,10 @@ pub struct Reader<R> {
     systems: Systems,
     /// True if the text of the feature read last has been cut out of the stream.
     is_cut: bool,
+    /// Number of features that have begun.
+    count: u64,
+    /// The feature that has begun, and the number of warnings before it; `None` between features.
+    within: Option<(Label, usize)>,
 }
 
 /// Coordinate systems of the features, which members `crs` state.
@@ -219,6 +224,8 @@ impl<R: Read> Reader<R> {
             in_lines: 0,
             systems: Systems::default(),
             is_cut: false,
+            count: 0,
+            within: None,
         }
     }
 
@@ -242,8 +249,21 @@ impl<R: Read> Reader<R> {
         self.is_cut
     }
 
+    /// Returns the next feature, and tells in which one faults are.
     pub fn next_feature(&mut self) -> Result<Option<Feature>> {
         self.is_cut = false;
+        let next = self.next_unlabelled();
+        let Some((label, from)) = self.within.take() else { return next };
+        self.geometries.warnings.labelled(next, label, from)
+    }
+
+    /// Notes that a feature begins.
+    fn begin_feature(&mut self) {
+        self.count += 1;
+        self.within = Some((Label::bare(self.count), self.geometries.warnings.kept.len()));
+    }
+
+    fn next_unlabelled(&mut self) -> Result<Option<Feature>> {
         loop {
             match self.state {
                 State::Between => {
@@ -255,6 +275,7 @@ impl<R: Read> Reader<R> {
                         self.in_lines = if one_line { self.in_lines + 1 } else { 0 };
                         self.stream.by_lines = self.in_lines >= LINES;
                         self.is_cut = true;
+                        self.begin_feature();
                         return self.document().map(Some);
                     }
                     (self.in_lines, self.stream.by_lines) = (0, false);
@@ -275,6 +296,7 @@ impl<R: Read> Reader<R> {
                         self.stream.expect(b',', "`,` or `]` after a feature")?;
                     }
                     self.state = State::Features(true);
+                    self.begin_feature();
                     let piece = self.stream.value("a feature")?;
                     self.is_cut = true;
                     return self.feature(piece.text()).map(Some);
@@ -387,13 +409,33 @@ impl<R: Read> Reader<R> {
 
     /// Returns a feature with the number of its system.
     fn interpret(&mut self, whole: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
-        let mut feature = self.bare(whole, members)?;
+        let mut feature = match self.bare(whole, members) {
+            Ok(feature) => feature,
+            Err(error) => {
+                self.name_broken(members);
+                return Err(error);
+            }
+        };
         let further = feature.members.iter().chain(&feature.geometry_members);
         let own = further.into_iter().find(|member| member.name.as_bytes() == CRS);
         let warnings = &mut self.geometries.warnings;
         let own = own.map(|own| self.systems.of_member(&own.value, whole.place(), warnings));
         self.systems.stamp(&mut feature, own);
         Ok(feature)
+    }
+
+    /// Notes the name of a feature that cannot be read. A document of no type that is known is no feature.
+    fn name_broken(&mut self, members: &[RawMember<'_>]) {
+        let value = |name: &[u8]| {
+            let found = members.iter().rfind(|(known, _)| known.as_bytes() == name);
+            found.map(|(_, value)| *value)
+        };
+        if self.count == 1 && self.state == State::Between && value(b"\"geometry\"").is_none() {
+            self.within = None;
+        } else if let Some((label, _)) = &mut self.within {
+            let id = value(b"\"id\"").and_then(|id| std::str::from_utf8(id.as_bytes()).ok());
+            label.name = name(id, || value(b"\"properties\"").map(fields).unwrap_or_default());
+        }
     }
 
     fn bare(&mut self, whole: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
@@ -464,6 +506,13 @@ impl<R: Read> Reader<R> {
             Err(whole.error("a Feature needs the member \"geometry\""))
         }
     }
+}
+
+/// Returns the members of an object; none of a broken one.
+fn fields(object: Text<'_>) -> Vec<Member> {
+    let text = |text: Text<'_>| String::from_utf8_lossy(text.as_bytes()).into_owned();
+    let members = object.members().unwrap_or_default().into_iter();
+    members.map(|(name, value)| Member { name: text(name), value: text(value) }).collect()
 }
 
 /// Returns the name of another format of JSON that an object without a type belongs to, and advice.

@@ -9,6 +9,7 @@ mod rings;
 mod write;
 
 use super::beside::Beside;
+use super::numbered::Label;
 use super::{Feature, System, Warnings};
 use crate::text::Tally;
 use crate::told::counted;
@@ -52,6 +53,14 @@ pub struct Faults {
     pub measures: Tally,
 }
 
+impl Faults {
+    /// Adds the record that has just been read to the places of its faults.
+    fn label(&mut self, label: impl Fn() -> Label) {
+        let Self { infinite, patches, measures, .. } = self;
+        [infinite, patches, measures].into_iter().for_each(|tally| tally.label(&label));
+    }
+}
+
 impl Reader {
     /// Creates a reader; searches for the files beside this one.
     ///
@@ -91,12 +100,18 @@ impl Reader {
             if self.table.as_ref().is_some_and(|table| table.is_deleted(row)) {
                 continue;
             }
+            let (from, number) = (warnings.kept.len(), self.row as u64);
             let record = self.bytes.get(content).unwrap_or_default();
-            let geometry = record::read(record, &place, &mut self.faults, warnings)?;
+            let geometry = record::read(record, &place, &mut self.faults, warnings);
             let table = self.table.as_ref();
             let properties = table.map(|table| table.row(row, &mut self.faults));
             let srid = self.system.code;
-            return Ok(Some(Feature { geometry, properties, srid, ..Feature::default() }));
+            let mut feature = Feature { properties, srid, ..Feature::default() };
+            let label = || Label::of(number, &feature);
+            self.faults.label(label);
+            warnings.label(from, label);
+            feature.geometry = geometry.map_err(|error| error.in_feature(&label()))?;
+            return Ok(Some(feature));
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::geo::geojson::{Cursor, RawMember, Text, finish_line, finish_ring, kind};
 use crate::geo::members::quoted;
+use crate::geo::numbered::{Label, name};
 use crate::geo::{Dimensions, Feature, Geometry, MAX_DEPTH, Member, Points, Warnings};
 use crate::{Error, Limits, Result};
 use durer::math::DVec2;
@@ -168,26 +169,21 @@ impl Topology<'_> {
         })
     }
 
+    /// Reads a feature, and tells in which one faults are.
     fn feature(&mut self, object: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
-        let mut feature =
-            Feature { geometry: self.geometry(object, members, 0)?, ..Feature::default() };
-        for (name, value) in members {
-            match name.as_bytes() {
-                b"\"type\"" | b"\"arcs\"" | b"\"coordinates\"" | b"\"geometries\""
-                | b"\"bbox\"" => {}
-                b"\"properties\"" if value.as_bytes().first() == Some(&b'{') => {
-                    feature.properties = Some(value.checked()?);
-                }
-                b"\"properties\"" => {}
-                b"\"id\"" => {
-                    feature.id = (!value.is_null()).then(|| value.checked()).transpose()?
-                }
-                _ => {
-                    feature.members.push(Member { name: name.checked()?, value: value.checked()? })
-                }
-            }
-        }
-        Ok(feature)
+        let (from, number) = (self.warnings.kept.len(), self.features.len() as u64 + 1);
+        let feature = self.geometry(object, members, 0);
+        let value = |key: &str| {
+            get(members, key).and_then(|value| std::str::from_utf8(value.as_bytes()).ok())
+        };
+        let label = || {
+            let fields =
+                || crate::geo::members::members(value("\"properties\"").unwrap_or_default());
+            Label { number, name: name(value("\"id\""), fields) }
+        };
+        self.warnings.label(from, label);
+        let named = |error: Error| error.in_feature(&label());
+        attributed(feature.map_err(named)?, members).map_err(named)
     }
 
     fn geometry(
@@ -339,4 +335,21 @@ impl Topology<'_> {
         }
         Ok(numbers)
     }
+}
+
+/// Returns the feature of a geometry with its fields, its id, and members that the format does not define.
+fn attributed(geometry: Option<Geometry>, members: &[RawMember<'_>]) -> Result<Feature> {
+    let mut feature = Feature { geometry, ..Feature::default() };
+    for (name, value) in members {
+        match name.as_bytes() {
+            b"\"type\"" | b"\"arcs\"" | b"\"coordinates\"" | b"\"geometries\"" | b"\"bbox\"" => {}
+            b"\"properties\"" if value.as_bytes().first() == Some(&b'{') => {
+                feature.properties = Some(value.checked()?);
+            }
+            b"\"properties\"" => {}
+            b"\"id\"" => feature.id = (!value.is_null()).then(|| value.checked()).transpose()?,
+            _ => feature.members.push(Member { name: name.checked()?, value: value.checked()? }),
+        }
+    }
+    Ok(feature)
 }
