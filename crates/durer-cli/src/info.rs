@@ -91,6 +91,8 @@ struct Info {
     animations: Vec<String>,
     /// Names of its material variants.
     variants: Vec<String>,
+    /// Names of its scenes, if it may have several.
+    scenes: Vec<String>,
     plates: Vec<String>,
     extensions: Vec<String>,
     warnings: Vec<String>,
@@ -241,6 +243,7 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
         lights: scene.lights.iter().map(|l| light(&l.kind)).collect(),
         animations: model.animations.iter().map(short).collect(),
         variants: model.variants.iter().map(short).collect(),
+        scenes: model.scenes.iter().map(short).collect(),
         plates: model.plates.iter().map(short).collect(),
         extensions: model.extensions.iter().map(short).collect(),
         warnings,
@@ -285,6 +288,7 @@ fn of_pieces(name: String, read: &mut InPieces) -> Result<Info, Failure> {
         lights: Vec::new(),
         animations: Vec::new(),
         variants: Vec::new(),
+        scenes: Vec::new(),
         plates: Vec::new(),
         extensions: Vec::new(),
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
@@ -471,6 +475,9 @@ impl Info {
         list("lights", self.lights.iter().map(ToString::to_string).collect());
         list("animations", self.animations.iter().map(unnamed).collect());
         list("variants", self.variants.iter().map(unnamed).collect());
+        if self.scenes.len() > 1 {
+            list("scenes", self.scenes.iter().map(unnamed).collect());
+        }
         let numbered =
             |(i, name): (usize, &String)| format!("{} {name}", i + 1).trim_end().to_owned();
         list("plates", self.plates.iter().enumerate().map(numbered).collect());

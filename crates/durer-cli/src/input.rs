@@ -74,6 +74,7 @@ pub fn read_options(args: &ReadingArgs, work: &Work) -> Reading {
         },
         pose: posed.then_some(pose),
         variant: args.variant.clone(),
+        scene: args.scene.clone(),
         plate: args.plate,
         own_lights: args.own_lights,
     };
@@ -99,6 +100,7 @@ fn tell_ignored(model: &mut Model, options: &ReadOptions) {
         for (given, what) in [
             (options.pose.is_some(), "animations; --animation and --time do"),
             (options.variant.is_some(), "variants; --variant does"),
+            (options.scene.is_some(), "scenes; --scene does"),
         ] {
             if given {
                 let message = format!("{} has no {what} nothing", model.format);
@@ -125,8 +127,21 @@ fn read_whole(
 ) -> Result<Model, Failure> {
     let bytes = bytes_within(path, &options.limits)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_model(&bytes, &name, resources, options)
-        .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
+    read_model(&bytes, &name, resources, options).map_err(|e| refused(path, &e, &options.limits))
+}
+
+/// Returns the failure for an error of a reader, with the option that raises the limit if there is one.
+fn refused(path: &Path, error: &durer_formats::Error, limits: &Limits) -> Failure {
+    let option = match error {
+        durer_formats::Error::Limit { limit, .. } if *limit == limits.primitives => {
+            "; --max-triangles raises it"
+        }
+        durer_formats::Error::Limit { limit, .. } if *limit == limits.decoded_bytes => {
+            "; --max-bytes raises it"
+        }
+        _ => "",
+    };
+    Failure::Data(format!("{}: {error}{option}", display_name(path)))
 }
 
 /// Returns access to the files beside an input, if the input is a file.
@@ -171,7 +186,7 @@ fn streamed(
     } else {
         return None;
     };
-    Some(model.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path)))))
+    Some(model.map_err(|e| refused(path, &e, &options.limits)))
 }
 
 /// Returns all bytes of a file, or of standard input, refused above the limit.

@@ -31,7 +31,12 @@ impl Budget {
     /// Charges `count` triangles and lines for copies of meshes that differ only in material.
     pub fn copied(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
         self.copies = self.copies.saturating_add(count);
-        take("triangles and lines in all materials", self.copies, self.limits.primitives, place)
+        take(
+            "number of triangles and lines in all materials",
+            self.copies,
+            self.limits.primitives,
+            place,
+        )
     }
 
     /// Charges this many bytes of numbers.

@@ -69,11 +69,11 @@ pub enum Error {
         hint: String,
     },
     /// A stated limit would be exceeded.
-    #[error("{place}{what} of {value} is above the limit of {limit}")]
+    #[error("{place}the {what} is {value}, above the limit of {limit}")]
     Limit {
         /// Position in the file.
         place: Place,
-        /// Limited quantity, e.g. `"decoded size"`.
+        /// Limited quantity, a noun without an article, e.g. `"decoded size"`.
         what: &'static str,
         /// Amount that the file needs.
         value: u64,

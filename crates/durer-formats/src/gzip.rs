@@ -66,7 +66,7 @@ mod tests {
         let limited = Limits { decoded_bytes: 999, ..Limits::default() };
         assert_eq!(
             read(&bytes, &limited),
-            Err("size without compression of 1000 is above the limit of 999".to_owned())
+            Err("the size without compression is 1000, above the limit of 999".to_owned())
         );
         let work = Work::with_budget(999, "max_memory");
         let refused = read(&bytes, &Limits { work, ..Limits::default() });

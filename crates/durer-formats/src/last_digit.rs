@@ -58,7 +58,8 @@ impl Digit {
             None => (word, None),
         };
         let mantissa = mantissa.strip_prefix(b"-").unwrap_or(mantissa);
-        let point = mantissa.iter().position(|b| *b == b'.').unwrap_or(mantissa.len());
+        let is_point = |b: &u8| matches!(b, b'.' | b',');
+        let point = mantissa.iter().position(is_point).unwrap_or(mantissa.len());
         let decimals = mantissa.get(point + 1..).unwrap_or_default();
         let digits = |s: &[u8]| s.iter().all(u8::is_ascii_digit);
         if mantissa.is_empty() || !digits(&mantissa[..point]) || !digits(decimals) {
@@ -68,7 +69,7 @@ impl Digit {
         let Some(exponent) = exponent else { return Some(Self::Fixed(decimals)) };
         let exponent: i32 = std::str::from_utf8(exponent).ok()?.parse().ok()?;
         // The power of a zero has no meaning.
-        let is_zero = mantissa.iter().all(|b| matches!(b, b'0' | b'.'));
+        let is_zero = mantissa.iter().all(|b| matches!(b, b'0' | b'.' | b','));
         let power = if is_zero { -400 } else { exponent.clamp(-400, 400) };
         Some(Self::Exponent(power, decimals))
     }
@@ -85,6 +86,7 @@ mod tests {
         assert!(close(of("vn 0.12345 1 0\nv 40 0 0.5\r\nv -1.125 2 3 0.123456\n", "v"), 1e-3));
         assert!(close(of(" vertex 4.000000e+01 1.5e-7 0.0e+00\n", "vertex"), 1e-5));
         assert!(close(of("1.25 0 3 0.123456 9\n3 0 1 2\n", ""), 1e-2));
+        assert!(close(of("v 1,5 0,125 3\n", "v"), 1e-3));
         assert_eq!(of("v 1 2 3\nv nan . 1e999999999999\n", "v"), 0.0);
         assert_eq!(of("", ""), 0.0);
     }

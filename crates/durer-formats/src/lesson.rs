@@ -90,7 +90,7 @@ fn figure(
         if let Some(geometry) = &feature.geometry {
             add(&mut figure, geometry);
         }
-        check("points to be explained", figure.points().count())?;
+        check("number of points to be explained", figure.points().count())?;
     }
     warnings.extend(reader.warnings().iter().map(ToString::to_string));
     Ok(figure)
@@ -127,7 +127,7 @@ fn polygon(figure: &mut Figure, rings: impl Iterator<Item = Vec<DVec2>>) {
 /// Returns a picture as greys, which algorithms take as light or as names of colours.
 fn grid(image: &Image, seed: DVec2, warnings: &mut Vec<String>) -> Result<Grid> {
     let (width, height) = (image.width, image.height);
-    check("pixels to be explained", image.data.len())?;
+    check("number of pixels to be explained", image.data.len())?;
     let mut colors: BTreeMap<u8, [u8; 4]> = BTreeMap::new();
     let mut alike = false;
     let mut cells = Vec::new();

@@ -132,6 +132,9 @@ pub struct ReadOptions {
     /// Name or number of the variant whose materials are shown (KHR_materials_variants); `None` = the default materials
     /// of the file.
     pub variant: Option<String>,
+    /// Name or number, from 0, of the scene that is read, of a file with several (glTF); `None` = the default scene of
+    /// the file.
+    pub scene: Option<String>,
     /// Number, from 1, of the plate whose objects are read, in a project that has plates; `None` = all.
     pub plate: Option<u32>,
     /// True if lights of COLLADA and FBX shine. Most are leftovers of the exporter, in units that hardly any program
@@ -152,6 +155,8 @@ pub struct Model {
     pub animations: Vec<String>,
     /// Names of the variants of the model's materials.
     pub variants: Vec<String>,
+    /// Names of the scenes of a file that may have several (glTF).
+    pub scenes: Vec<String>,
     /// Names of the plates of a slicer's project, empty if they have none.
     pub plates: Vec<String>,
     /// Repairs and omissions.

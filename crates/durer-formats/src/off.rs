@@ -96,6 +96,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
         Err(why) if reader.has_something() => reader.warn_of_end(&mut model, why)?,
         other => other?,
     }
+    model.warn_of(&cursor.commas, crate::text::COMMAS);
     model.scene.last_digit = last_digit(&text, b"");
     reader.into_model(model)
 }

@@ -54,10 +54,14 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     let body = stripped.get(header.length..).unwrap_or_default();
     let offset = (bytes.len() - stripped.len() + header.length) as u64;
     let mut builder = Builder::new(&header, options.limits.clone());
+    let mut commas = text::Tally::default();
     let warning = match header.encoding {
         Encoding::Ascii => {
             let cursor = text::Cursor::at_line(body, header.lines);
-            read_body(&header, &mut builder, &mut Ascii::new(cursor))?
+            let mut values = Ascii::new(cursor);
+            let warning = read_body(&header, &mut builder, &mut values)?;
+            commas = values.commas();
+            warning
         }
         Encoding::LittleEndian => {
             read_body(&header, &mut builder, &mut Binary::<true>::new(body, offset))?
@@ -70,6 +74,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     if matches!(header.encoding, Encoding::Ascii) {
         model.scene.last_digit = last_digit(body, b"");
     }
+    model.warn_of(&commas, text::COMMAS);
     warn_of_end(&mut model, &header, warning);
     model.scene.check()?;
     Ok(model)

@@ -204,7 +204,7 @@ pub fn write_items<W: Write>(out: W, pixels: &Pixels<u32>, compression: Compress
 fn too_many_items(item: u32) -> Error {
     Error::Limit {
         place: crate::Place::Whole,
-        what: "item index",
+        what: "index of an item",
         value: u64::from(item),
         limit: u64::from(ITEM_BACKGROUND) - 1,
     }
@@ -365,7 +365,7 @@ mod tests {
 
         let too_many = Pixels::new(1, 1, ITEM_BACKGROUND);
         let error = write_items(Vec::new(), &too_many, Compression::Fast).unwrap_err();
-        assert!(error.to_string().contains("16777215 is above the limit of 16777214"), "{error}");
+        assert!(error.to_string().contains("16777215, above the limit of 16777214"), "{error}");
     }
 
     #[test]

@@ -14,7 +14,12 @@ pub(crate) struct Cursor<'a> {
     word_start: usize,
     /// Numbers followed by other characters, e.g. `3.1+e2`: their count, and the place of the first.
     pub sloppy: Tally,
+    /// Numbers with a comma as decimal sign, e.g. `1,5`.
+    pub commas: Tally,
 }
+
+/// Words of a warning about numbers with a decimal comma.
+pub(crate) const COMMAS: &str = "{number has a decimal comma|numbers have decimal commas}; {it was read as a point|they were read as points}";
 
 /// Number of occurrences, and the first of them; becomes one warning instead of a million.
 #[derive(Debug, Clone, Default)]
@@ -95,6 +100,21 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
     text.into_bytes()
 }
 
+/// Returns the number of a word with a comma in place of the point, as programs write it in countries that do so: one
+/// comma between two digits, and no point.
+pub(crate) fn with_decimal_comma(word: &[u8]) -> Option<f64> {
+    let at = word.iter().position(|&byte| byte == b',')?;
+    let is_digit = |at: usize| word.get(at).is_some_and(u8::is_ascii_digit);
+    let is_between = at > 0 && is_digit(at - 1) && is_digit(at + 1);
+    let further = word.get(at + 1..)?.iter().any(|&byte| matches!(byte, b',' | b'.'));
+    if !is_between || further || word.get(..at)?.contains(&b'.') {
+        return None;
+    }
+    let mut pointed = word.to_vec();
+    *pointed.get_mut(at)? = b'.';
+    number::float(&pointed).filter(|(_, length)| *length == word.len()).map(|(value, _)| value)
+}
+
 fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0x0b | 0x0c)
 }
@@ -106,8 +126,8 @@ fn ends_line(byte: u8) -> bool {
 impl<'a> Cursor<'a> {
     /// Creates a cursor at the start of a text.
     pub fn new(bytes: &'a [u8]) -> Self {
-        let sloppy = Tally::default();
-        Self { bytes, at: 0, line: 1, line_start: 0, word_start: 0, sloppy }
+        let (sloppy, commas) = Default::default();
+        Self { bytes, at: 0, line: 1, line_start: 0, word_start: 0, sloppy, commas }
     }
 
     /// Creates a cursor at the start of a text that is the rest of a file; `lines` is the number of its first line.
@@ -253,8 +273,13 @@ impl<'a> Cursor<'a> {
         self.at += length;
         if self.peek().is_some_and(|b| !is_blank(b) && !ends_line(b)) {
             let place = self.place();
-            self.sloppy.add(|| place);
             self.finish_word();
+            let word = self.bytes.get(self.word_start..self.at).unwrap_or_default();
+            if let Some(value) = with_decimal_comma(word) {
+                self.commas.add(|| place);
+                return Ok(Some(value));
+            }
+            self.sloppy.add(|| place);
         }
         Ok(Some(value))
     }
@@ -329,6 +354,16 @@ mod tests {
     fn names_are_utf8_or_windows_1252() {
         assert_eq!(name("Größe".as_bytes()), "Größe");
         assert_eq!(name(b"Gr\xf6\xdfe \x80\x99\x9f"), "Größe €™Ÿ");
+    }
+
+    #[test]
+    fn a_comma_between_digits_is_a_point() {
+        let mut c = Cursor::new(b"1,5 -0,25e1 7 1,2,3 1,2.5 1, ,5");
+        let mut values = [0.0; 6];
+        assert_eq!(c.floats(&mut values).expect("numbers"), 6);
+        assert_eq!(values, [1.5, -2.5, 7.0, 1.0, 1.0, 1.0]);
+        assert_eq!((c.commas.count, c.sloppy.count), (2, 3));
+        assert!(c.float().is_err());
     }
 
     #[test]

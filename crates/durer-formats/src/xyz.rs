@@ -1,7 +1,8 @@
 //! Point clouds as text: one point per line, of three coordinates and optional further values.
 //!
 //! There is no standard: the files of scanners and of CloudCompare, MeshLab and Open3D have the suffixes `.xyz`,
-//! `.xyzrgb`, `.pts`, `.asc`, `.txt` and `.csv`. Numbers are separated by blanks, commas or semicolons. A first line of
+//! `.xyzrgb`, `.pts`, `.asc`, `.txt` and `.csv`. Numbers are separated by blanks, commas or semicolons; commas are decimal signs
+//! if blanks or semicolons separate three or more numbers with at most one comma each. A first line of
 //! one number is the count of points (Leica's PTS, several times if there are several scans); other lines without
 //! numbers before the first point are comments, and give the meaning of each column if they name `x`, `y` and `z`.
 //! Otherwise columns after the third are recognized by their values: three from 0 to 255 (or to 1, and not beyond) are
@@ -12,7 +13,7 @@
 //! while reading, 16 more with colours.
 
 use crate::cloud::Cloud;
-use crate::text::{Tally, quote, utf8};
+use crate::text::{Tally, quote, utf8, with_decimal_comma};
 use crate::{Error, Model, Place, ReadOptions, Resources, Result, number};
 use durer::math::{DVec3, Vec4};
 
@@ -104,6 +105,9 @@ fn numbers(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
     if line.starts_with(b"#") || line.starts_with(b"//") {
         return Some((values, 0));
     }
+    if let Some(found) = decimal_commas(line) {
+        return Some(found);
+    }
     let mut rest = line;
     while let Some(start) = rest.iter().position(|&b| !separates(b)) {
         rest = rest.get(start..)?;
@@ -118,6 +122,26 @@ fn numbers(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
         }
     }
     Some((values, count))
+}
+
+/// Returns the numbers of a line whose commas are decimal signs, and their count: three words or more, parted by blanks
+/// or semicolons, each with at most one comma between digits and without a point.
+fn decimal_commas(line: &[u8]) -> Option<([f64; COLUMNS], usize)> {
+    if !line.contains(&b',') || line.contains(&b'.') {
+        return None;
+    }
+    let (mut values, mut count) = ([0.0; COLUMNS], 0);
+    let words = line.split(|&b| b.is_ascii_whitespace() || b == b';');
+    for word in words.filter(|word| !word.is_empty()) {
+        let whole =
+            || number::float(word).filter(|(_, n)| *n == word.len()).map(|(value, _)| value);
+        let value = with_decimal_comma(word).or_else(whole)?;
+        if let Some(to) = values.get_mut(count) {
+            *to = value;
+            count += 1;
+        }
+    }
+    (count >= 3).then_some((values, count))
 }
 
 /// Facts about the columns.

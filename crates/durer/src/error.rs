@@ -47,9 +47,9 @@ pub enum Error {
         near: String,
     },
     /// A size that the caller chose is above a stated limit.
-    #[error("{what} {value} is above the limit of {limit}")]
+    #[error("the {what} is {value}, above the limit of {limit}")]
     TooLarge {
-        /// Limited size, e.g. `"pixels"`.
+        /// Limited size, a noun without an article, e.g. `"number of pixels"`.
         what: &'static str,
         /// Size that was chosen.
         value: u64,
@@ -57,9 +57,9 @@ pub enum Error {
         limit: u64,
     },
     /// The size of the data, or a count of steps of the work, is above a stated limit.
-    #[error("{what} {value} is above the limit of {limit}")]
+    #[error("the {what} is {value}, above the limit of {limit}")]
     Limit {
-        /// Limited quantity, e.g. `"vertices"`.
+        /// Limited quantity, a noun without an article, e.g. `"number of vertices"`.
         what: &'static str,
         /// Amount that the input requires.
         value: u64,

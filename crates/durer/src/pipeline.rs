@@ -177,7 +177,11 @@ impl RenderOptions {
         let (width, height) = self.rendered_size();
         let pixels = u64::from(width) * u64::from(height);
         if pixels > self.max_pixels {
-            return Err(Error::TooLarge { what: "pixels", value: pixels, limit: self.max_pixels });
+            return Err(Error::TooLarge {
+                what: "number of pixels",
+                value: pixels,
+                limit: self.max_pixels,
+            });
         }
         if let Some(Exposure::Ev(ev)) = self.exposure
             && !ev.is_finite()

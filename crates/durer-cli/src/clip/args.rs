@@ -33,7 +33,7 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer clip`.
 #[derive(Debug, Args)]
 pub struct ClipArgs {
-    /// GeoJSON (also one feature per line), TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB or
+    /// GeoJSON (also one feature per line), JSON of ArcGIS, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB or
     /// SVG, also compressed by gzip; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,

@@ -71,6 +71,8 @@ pub struct Layer {
     pub labels: Labels,
     /// True if an option of the style was given for it.
     pub styled: bool,
+    /// Options of the style that were given for it or for all, by their names in the parser.
+    pub given: Vec<String>,
 }
 
 /// Layers to draw, from the bottom to the top.
@@ -146,6 +148,12 @@ struct LayerArgs {
     label_halo: Vec<Ink>,
 }
 
+/// Options that have an effect only with `--label`, and only with a stroke.
+pub const OF_LABELS: [&str; 4] = ["label_priority", "label_size", "label_color", "label_halo"];
+pub const OF_STROKES: [&str; 2] = ["stroke_width", "dashes"];
+const DEPENDENT: [&str; 6] =
+    ["label_priority", "label_size", "label_color", "label_halo", "stroke_width", "dashes"];
+
 /// Returns whether an option is one of the style of layers, by its name in the parser.
 pub fn is_style(id: &clap::Id) -> bool {
     LayerArgs::augment_args(Command::new("layers")).get_arguments().any(|a| a.get_id() == id)
@@ -209,15 +217,20 @@ impl FromArgMatches for Layers {
         let layers =
             inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
                 let mut look = common.clone();
-                let given = apply(matches, *start..end, &mut look);
-                let styled = given || look != (Style::default(), Labels::default());
+                let styled = apply(matches, *start..end, &mut look);
+                let styled = styled || look != (Style::default(), Labels::default());
                 let (style, labels) = look;
                 let chosen = last(matches, "layer", &(*start..end)).or_else(|| of_all.clone());
                 let own = all(matches, "conditions", &(*start..end));
                 let conditions = for_all.iter().cloned().chain(own).collect();
                 let own = last(matches, "from_crs", &(*start..end));
                 let from_crs = own.or_else(|| system_of_all.clone());
-                Layer { input, chosen, conditions, from_crs, style, labels, styled }
+                let given = DEPENDENT.iter().filter(|name| {
+                    let places = matches.indices_of(name).into_iter().flatten();
+                    places.into_iter().any(|at| at < first || (*start..end).contains(&at))
+                });
+                let given = given.map(|name| (*name).to_owned()).collect();
+                Layer { input, chosen, conditions, from_crs, style, labels, styled, given }
             });
         Ok(Self(layers.collect()))
     }

@@ -1,7 +1,7 @@
 //! A map of layers.
 
 use super::args::DxfUnits;
-use super::layers::{Labels, Priority};
+use super::layers::{Labels, Layer, OF_LABELS, OF_STROKES, Priority};
 use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, Surface, fonts, is_for_cad, sides};
 use crate::failure::Failure;
@@ -38,6 +38,7 @@ const MOST_DIGITS: usize = 15;
 impl Job<'_> {
     /// Returns everything that the layers paint.
     pub(super) fn map<T: Surface>(&mut self, given: &[Given<'_>]) -> Result<T, Failure> {
+        self.tell_idle();
         let start = Instant::now();
         let mut layers = Vec::new();
         for layer in given {
@@ -96,6 +97,26 @@ impl Job<'_> {
         }
         self.write(&mut map, labels, given)?;
         Ok(map.into_target())
+    }
+
+    /// Warns of options that have no effect on any of the layers that they are given for.
+    fn tell_idle(&self) {
+        let layers = &self.args.layers.0;
+        let idle = |option: &&&str, has_none: &dyn Fn(&Layer) -> bool| {
+            let mut with =
+                layers.iter().filter(|l| l.given.iter().any(|name| name == *option)).peekable();
+            with.peek().is_some() && with.all(has_none)
+        };
+        let of_labels = OF_LABELS.iter().filter(|o| idle(o, &|layer| layer.labels.field.is_none()));
+        let of_strokes =
+            OF_STROKES.iter().filter(|o| idle(o, &|layer| layer.style.stroke.is_none()));
+        let reasons = of_labels
+            .map(|o| (*o, "there is no --label"))
+            .chain(of_strokes.map(|o| (*o, "--stroke is none")));
+        for (option, reason) in reasons {
+            let option = format!("--{}", option.replace('_', "-"));
+            self.messages.warning(&option, format!("it has no effect: {reason}"));
+        }
     }
 
     /// Draws the labels and counts the ones drawn.

@@ -50,7 +50,12 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Some(path) => failure.named(&crate::input::display_name(path)),
         None => failure,
     };
-    let frames = lesson.run(&input, &options, args.max_steps as usize).map_err(usage);
+    let frames = lesson.run(&input, &options, args.max_steps as usize).map_err(|e| match e {
+        durer::Error::Limit { .. } if args.input.is_some() => {
+            Failure::Refused(format!("{e}; {SMALLER}"))
+        }
+        e => usage(e),
+    });
     let frames = frames.map_err(of_input)?;
     let frames = chosen(args, frames)?;
     match format {
@@ -67,6 +72,10 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Format::Text => deliver_bytes(&target, captions(&frames, language).as_bytes()).map(drop),
     }
 }
+
+/// Advice for inputs that are too large to be explained.
+pub const SMALLER: &str =
+    "take a part of it, or one with fewer points (durer clip, durer simplify)";
 
 /// Returns the format by an option or by the name of the output.
 fn format(args: &ExplainArgs) -> Result<Format, Failure> {

@@ -26,6 +26,9 @@ pub fn input(args: &ExplainArgs, messages: &Messages) -> Result<Input, Failure> 
     let read = read(&bytes, &file, &*folder, &options).map_err(|e| match e {
         // The place of --at.
         Error::Library(e @ durer::Error::Parameter { .. }) => Failure::of_library(&e),
+        e @ Error::Library(durer::Error::Limit { .. }) => {
+            Failure::Data(format!("{name}: {e}; {}", super::SMALLER))
+        }
         e => Failure::Data(format!("{name}: {e}")),
     })?;
     read.warnings.iter().for_each(|warning| messages.warning(&name, warning));

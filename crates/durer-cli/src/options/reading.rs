@@ -17,6 +17,9 @@ pub struct ReadingArgs {
     /// Show the model in this variant of its materials, by name or number; `durer info` lists them
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
+    /// Show this scene of a glTF file, by name or by number from 0; `durer info` lists them [default: the file's own]
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
     /// Use the lights of COLLADA and FBX files; lights of glTF files are always used
     #[arg(long)]
     pub own_lights: bool,

@@ -6,6 +6,7 @@ use crate::values;
 use clap::{ArgGroup, Args};
 use durer::clip::simplify::{self, Amount, Dropped, LineSimplifier};
 use durer_formats::geo::{Feature, Geometry};
+use durer_formats::told::agreeing;
 use serde::{Serialize, Serializer};
 
 pub const EXAMPLES: &str = "\
@@ -71,9 +72,8 @@ impl Simplified {
     /// Returns a message about faults of the input.
     pub fn told(&self) -> Option<String> {
         let n = self.dropped.degenerate;
-        let what =
-            "rings of fewer than three different points, or lines of fewer than two, are left out";
-        (n > 0).then(|| format!("{n} {what}"))
+        let words = "{ring of fewer than three different points, or line of fewer than two, is|rings of fewer than three different points, or lines of fewer than two, are} left out";
+        (n > 0).then(|| agreeing(n, words))
     }
 }
 

@@ -16,9 +16,9 @@ use durer_formats::drawing::DrawingFormat;
 pub fn tell(args: &RenderArgs, messages: &Messages) {
     let kind = wanted(args).kind;
     let rules = if drawing::is_wanted(args, kind) {
-        [of_lines(args), of_style(args), of_file(args, kind)]
+        [of_lines(args), of_style(args), of_file(args, kind), of_lists(args, kind)]
     } else {
-        [of_algorithm(args), of_samples(args), of_shading(args)]
+        [of_algorithm(args), of_samples(args), of_shading(args), None]
     };
     idle::tell(&args.given, rules.into_iter().flatten(), messages);
 }
@@ -64,6 +64,20 @@ fn of_file(args: &RenderArgs, kind: Kind) -> Option<Rule> {
         }
         _ => return None,
     })
+}
+
+/// Returns options for the look or the order of lines, where a file lists lines with their properties or has none.
+fn of_lists(args: &RenderArgs, kind: Kind) -> Option<Rule> {
+    let format = kind.drawing()?;
+    let hatched = args.drawing.hatch.is_some_and(|hatch| hatch != Hatch::None);
+    if format == DrawingFormat::GeoJson {
+        return Some((
+            "a .geojson has all lines, with `visible` and the number of surfaces in front of them as properties",
+            &["hidden"],
+        ));
+    }
+    (args.drawing.style == Some(DrawStyle::Regions) && !hatched && !format.is_for_pens())
+        .then_some(("the style regions has no lines; regions+lines has", &["pen_order"]))
 }
 
 /// Returns options for surfaces, where a picture shows edges only.

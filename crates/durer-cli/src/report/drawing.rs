@@ -126,13 +126,14 @@ impl DrawingReport {
         }
     }
 
-    /// Warns if most edges are borders: faces that should meet do not.
+    /// Warns if so many edges are borders that most faces meet no others: two of three edges, as those of hexagons that
+    /// are separate. Open surfaces have fewer, even strips of faces in one row.
     pub fn loose_faces(&self) -> Option<String> {
         let Self { edges, border_edges, .. } = *self;
-        (border_edges >= LOOSE && border_edges * 2 > edges).then(|| {
+        (border_edges >= LOOSE && border_edges * 3 >= edges * 2).then(|| {
             format!(
-                "{border_edges} of {edges} edges are borders of a single face: the faces do not meet; \
-                 --weld LENGTH joins faces that are that close to each other"
+                "{border_edges} of {edges} edges belong to a single face: most faces do not meet others; \
+                 --weld LENGTH joins corners of faces that are that close to each other"
             )
         })
     }

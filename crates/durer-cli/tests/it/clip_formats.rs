@@ -64,7 +64,7 @@ fn compressed_files_are_read_as_they_are() {
     write("long.obj.gz", &"v 0 0 0\n".repeat(1000));
     folder
         .run("render long.obj.gz -o o.png --max-bytes 7999")
-        .fails(1, "size without compression of 8000 is above the limit of 7999");
+        .fails(1, "the size without compression is 8000, above the limit of 7999");
     write("hill.asc.gz", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n");
     folder.must("plot hill.asc.gz -o o.svg");
     folder.run("clip one.obj.gz --window 0,0,1,1 -o o.wkt").fails(1, "this is OBJ, a model");

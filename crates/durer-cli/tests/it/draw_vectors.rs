@@ -454,8 +454,9 @@ fn layers_of_several_systems_are_drawn_in_one() {
     assert!(direct == converted, "the window is in the new system");
     let both = draw("a.wkt utm.csv --from-crs EPSG:32632", "--to-crs EPSG:32632");
     assert!(both == converted, "--from-crs is that of the layer before it");
-    let ended = folder.run("draw utm.csv --to-crs EPSG:4326 -o o.png");
-    ended.fails(2, "utm.csv: --to-crs: ");
+    folder.write("bare.csv", "x,y\n500000,5300000\n");
+    let ended = folder.run("draw bare.csv --to-crs EPSG:4326 -o o.png");
+    ended.fails(2, "bare.csv: --to-crs: ");
     assert!(ended.err.contains("--from-crs sets the system of the input"), "{}", ended.err);
     let ended = folder.must("draw a.wkt utm.csv --from-crs EPSG:32632 -o o.png");
     assert!(ended.err.contains("; --to-crs converts them"), "{}", ended.err);
@@ -478,4 +479,25 @@ fn broken_features_are_left_out_of_maps_on_request() {
     ended.fails(3, "1 feature cannot be read and is left out: ");
     assert_eq!(ended.json()["layers"][0]["map"]["points"], 2);
     assert!(folder.path("a.png").exists(), "the rest is drawn");
+}
+
+#[test]
+fn options_of_labels_and_strokes_that_do_nothing_are_told() {
+    let folder = Folder::new();
+    folder.write("a.wkt", "LINESTRING (0 0, 9 9)");
+    for (options, told) in [
+        ("a.wkt --label-size 9", "--label-size: it has no effect: there is no --label"),
+        ("--label-halo red a.wkt a.wkt", "--label-halo: it has no effect: there is no --label"),
+        ("a.wkt --stroke none --dashes 2,1", "--dashes: it has no effect: --stroke is none"),
+    ] {
+        let ended = folder.must(&format!("draw {options} -o a.svg"));
+        assert!(ended.err.contains(&format!("durer: warning: {told}")), "{options}: {}", ended.err);
+    }
+    folder.write("b.geojson", MAP);
+    for options in
+        ["--label-size 9 a.wkt b.geojson --label name", "--dashes 2,1 a.wkt --stroke none a.wkt"]
+    {
+        let ended = folder.must(&format!("draw {options} -o a.svg"));
+        assert!(!ended.err.contains("no effect"), "{options}: {}", ended.err);
+    }
 }

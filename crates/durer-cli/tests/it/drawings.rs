@@ -481,6 +481,18 @@ fn faces_are_welded_as_far_as_their_digits_or_the_user_say() {
     assert!(borders > 0 && edges > 18, "{edges} {borders}");
     assert_eq!(drawing("apart.stl", "--weld 0.3"), (18, 0, false));
     assert!(drawing("apart.stl", "").2);
+    // An open tube of one row of faces: more than half of its edges are borders, but all faces meet.
+    let (mut tube, ends) = (String::new(), 13);
+    for i in 0..ends {
+        let (y, x) = (f64::from(i) * std::f64::consts::PI / 12.0).sin_cos();
+        tube += &format!("v {x:.6} {y:.6} 0\nv {x:.6} {y:.6} 1\n");
+    }
+    for i in 1..ends {
+        let [a, b, c, d] = [2 * i - 1, 2 * i, 2 * i + 2, 2 * i + 1];
+        tube += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+    }
+    folder.write("tube.obj", tube);
+    assert_eq!(drawing("tube.obj", ""), (49, 26, false));
     folder.run("render exact.stl -o o.svg --weld -1").fails(2, "--weld");
     folder.run("render exact.stl -o o.png --weld 1").fails(2, "it is for drawings");
 }

@@ -128,7 +128,7 @@ fn more_points_than_can_be_explained_are_an_error_of_the_file() {
     let ring = points.join(", ");
     folder.write("ring.wkt", format!("POLYGON (({ring}, {}))", points[0]));
     let run = folder.run("explain sutherland-hodgman ring.wkt -o steps.svg");
-    run.fails(1, "ring.wkt: points to be explained 2500 is above the limit of 2000");
+    run.fails(1, "ring.wkt: the number of points to be explained is 2500, above the limit of 2000; take a part of it");
     assert!(!folder.names().contains(&"steps.svg".to_owned()));
 }
 

@@ -143,3 +143,15 @@ fn pictures_that_are_more_than_they_hold_are_refused() {
         assert!(!folder.path(name).exists(), "{name}");
     }
 }
+
+#[test]
+fn limits_name_the_option_that_raises_them() {
+    let folder = Folder::with_models();
+    folder.run("render cube.obj -o a.png --max-triangles 5").fails(
+        1,
+        "cube.obj: the number of triangles, lines and points is 12, above the limit of 5; --max-triangles raises it",
+    );
+    folder
+        .run("info cube.obj --max-bytes 20")
+        .fails(1, "cube.obj: it has more bytes than the limit of 20; --max-bytes raises it");
+}

@@ -137,6 +137,8 @@ fn options_without_effect_are_told() {
         ("a.svg --style wireframe --exposure 1", "--exposure: it has no effect: the drawing"),
         ("a.svg --style wireframe --hidden dashed", "--hidden: it has no effect: a wireframe"),
         ("a.svg --style regions --lines all", "--lines: it has no effect: the style regions"),
+        ("a.geojson --hidden dashed", "--hidden: it has no effect: a .geojson has all lines"),
+        ("a.svg --style regions --pen-order", "--pen-order: it has no effect: the style regions"),
         ("a.geojson --page A3", "--page: it has no effect: a .geojson"),
         ("a.dxf --title T --unit mm", "--title: it has no effect: the file has no place for it"),
         ("a.gcode --background red --scale 1:1", "--background: it has no effect: the file"),
@@ -161,6 +163,7 @@ fn options_without_effect_are_told() {
         "a.svg --light ambient:red --section 1,0,0,0",
         "a.dxf --title T --unit mm --sheet third-angle",
         "a.svg --hidden dashed",
+        "a.svg --style regions --hatch shade --pen-order",
         "a.png --size 8x8 --aa 16 --light ambient:red --shading flat --shadows map --shadow-map 8",
     ] {
         let ended = folder.must(&format!("render cube.obj -o {options}"));

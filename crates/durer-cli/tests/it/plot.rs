@@ -123,6 +123,18 @@ fn broken_height_maps_are_told_with_their_place() {
 }
 
 #[test]
+fn ranges_too_large_or_too_small_are_refused_with_the_limit() {
+    let folder = Folder::new();
+    for range in ["0,1e300", "-2e100,0", "0,1e-120"] {
+        folder.run(&format!("plot --formula x --x={range} -o a.svg")).fails(
+            2,
+            "it must be two numbers within ±10¹⁰⁰, the first the smaller by 10⁻¹⁰⁰ or more",
+        );
+    }
+    folder.must("plot --formula x --samples 4 --x 0,1e90 -o a.svg");
+}
+
+#[test]
 fn options_without_effect_are_told() {
     let folder = Folder::new();
     for (options, told) in [

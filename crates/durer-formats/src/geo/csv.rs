@@ -244,6 +244,7 @@ impl Reader {
             self.tell(warnings);
             return Ok(None);
         };
+        self.check_commas(&row, line)?;
         if row.len() != self.keys.len() {
             self.ragged.add(|| Place::Line(line, 0));
         }
@@ -256,6 +257,26 @@ impl Reader {
         };
         feature.properties = Some(object(&self.fields(&row)));
         Ok(Some(feature))
+    }
+
+    /// Refuses a row that decimal commas have split into more values than there are columns.
+    fn check_commas(&self, row: &[Cow<'_, [u8]>], line: u64) -> Result<()> {
+        let Where::Parts(x, y, _) = self.place else { return Ok(()) };
+        let surplus = row.get(self.keys.len()..).unwrap_or_default();
+        let is_whole = |i: usize| row.get(i).is_some_and(|value| is_integer(value.trim_ascii()));
+        let is_split = self.rows.delimiter == b','
+            && surplus.iter().any(|value| !value.trim_ascii().is_empty())
+            && is_whole(x)
+            && is_whole(y);
+        if !is_split {
+            return Ok(());
+        }
+        let (values, columns) = (row.len(), self.keys.len());
+        let message = format!(
+            "the row has {values} values for {columns} columns, as if its numbers had decimal commas; write them with points, in \
+             quotes, or with semicolons between the values"
+        );
+        Err(Error::line(line, 0, message))
     }
 
     fn tell(&mut self, warnings: &mut Warnings) {
@@ -319,6 +340,12 @@ fn number(value: &[u8]) -> Option<f64> {
     let dotted: Vec<u8> = value.iter().map(|&b| if b == b',' { b'.' } else { b }).collect();
     let (number, length) = crate::number::float(&dotted)?;
     (length == value.len() && number.is_finite()).then_some(number)
+}
+
+/// Returns whether a value is a number without point and exponent.
+fn is_integer(value: &[u8]) -> bool {
+    let digits = value.strip_prefix(b"-").unwrap_or(value);
+    !digits.is_empty() && digits.iter().all(u8::is_ascii_digit)
 }
 
 /// Returns whether a value is a number of JSON that a double holds, or a truth value.

@@ -61,7 +61,7 @@ impl GeoFormat {
     ];
 
     /// List of formats that are read, for messages.
-    pub const READ: &'static str = "GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB and SVG, also compressed by gzip";
+    pub const READ: &'static str = "GeoJSON, JSON of ArcGIS, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB and SVG, also compressed by gzip";
 
     /// Returns the name used on the command line.
     pub fn name(self) -> &'static str {

@@ -38,6 +38,7 @@ mod members;
 pub(crate) mod number;
 mod numbered;
 mod reader;
+mod rings;
 mod schema;
 mod shapefile;
 mod svg;

@@ -2,11 +2,13 @@
 
 use super::json::Root;
 use crate::{Error, Model, Place, Result};
+use durer::math::DVec3;
 
 /// Extensions that are read in full.
 const READ: &[&str] = &[
     #[cfg(feature = "draco")]
     "KHR_draco_mesh_compression",
+    "CESIUM_RTC",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -35,7 +37,6 @@ const IN_PART: &[(&str, &str)] = &[
 /// coarser levels of detail.
 const SILENT: &[&str] = &[
     "AGI_articulations",
-    "CESIUM_RTC",
     "EXT_instance_features",
     "EXT_mesh_features",
     "EXT_mesh_manifold",
@@ -70,6 +71,14 @@ fn loss(name: &str) -> &'static str {
         n if n.contains("_materials_") => "drawn without its effect",
         _ => "drawn without what it adds",
     }
+}
+
+/// Returns the place of the file's origin in the world, by `CESIUM_RTC`: zero without it. The extension's z axis points
+/// up, glTF's y axis.
+pub fn center(root: &Root) -> DVec3 {
+    let center = root.extensions.rtc.as_ref().and_then(|rtc| rtc.center);
+    let [x, y, z] = center.filter(|c| c.iter().all(|x| x.is_finite())).unwrap_or_default();
+    DVec3::new(x, z, -y)
 }
 
 /// Refuses files that require an unsupported extension, and warns of each optional one.

@@ -98,7 +98,10 @@ objects! {
         lights: Option<Lights>,
         #[serde(rename = "KHR_materials_variants")]
         variants: Option<Variants>,
+        #[serde(rename = "CESIUM_RTC")]
+        rtc: Option<Rtc>,
     }
+    Rtc { center: Option<[f64; 3]>, }
     Variants { variants: Vec<Variant>, }
     Variant { name: Option<String>, }
     Lights { lights: Vec<Light>, }
@@ -175,7 +178,7 @@ objects! {
         attributes: std::collections::BTreeMap<String, Whole>,
     }
 
-    Scene { nodes: Vec<Whole>, }
+    Scene { name: Option<String>, nodes: Vec<Whole>, }
     Node {
         name: Option<String>,
         children: Vec<Whole>,

@@ -1,7 +1,7 @@
 //! glTF 2.0, text and binary (Khronos, 2017; ISO/IEC 12113:2022).
 //!
 //! The reader takes meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and one instance
-//! per node and primitive; the nodes of the default scene depth first; sparse, interleaved, normalized and quantized
+//! per node and primitive; the nodes of one scene depth first, around the centre of CESIUM_RTC; sparse, interleaved, normalized and quantized
 //! accessors; buffer views compressed by meshopt; primitives compressed by Draco (feature `draco`); materials with
 //! their textures, layers and variants; cameras; lights; skins and morph targets, posed at one moment of an animation;
 //! instances by attributes. The known extensions are listed in `extension.rs`.
@@ -16,6 +16,7 @@ mod broken;
 mod buffer;
 mod bytes;
 mod check;
+mod choice;
 mod container;
 mod deform;
 mod derived;
@@ -126,18 +127,22 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     model.animations = animation::names(&root);
     model.variants = variant::names(&root);
     let variant = variant::find(&model.variants, options.variant.as_deref())?;
+    model.scenes = choice::names("scene", root.scenes.iter().map(|scene| &scene.name));
+    let scene = choice::find("scene", &model.scenes, options.scene.as_deref(), "scenes")?;
     let pose = animation::pose(&source, options.pose.as_ref())?;
     if options.pose.is_some() && root.animations.is_empty() {
         model.warn(Place::Path("animations".into()), "there is none; the rest pose is taken");
     }
-    let world = tree.world_matrices(&root, &pose);
+    let world = tree.world_matrices(&root, &pose, extension::center(&root));
     let warnings = &mut model.warnings;
-    let nodes = tree.scene_nodes(&root, |n| {
+    let nodes = tree.scene_nodes(&root, scene, |n| {
         let message = "is in the scene but has a parent; drawn once, below its parent".to_owned();
         warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
     });
-    tell_missing_scene(&root, &nodes, &mut model);
-    tell_other_scenes(&root, &nodes, &mut model);
+    if scene.is_none() {
+        tell_missing_scene(&root, &nodes, &mut model);
+        tell_other_scenes(&root, &nodes, &mut model);
+    }
     let visible = tree.visible(&root);
     let mut builder = Builder {
         source: &source,
@@ -184,7 +189,7 @@ fn tell_other_scenes(root: &Root, shown: &[usize], model: &mut Model) {
         lost[node] = false;
     }
     let others = root.scenes.iter().filter(|scene| scene.nodes.iter().any(|n| lost[n.index()]));
-    let words = "further {scene has objects that are|scenes have objects that are} not shown";
+    let words = "further {scene has objects that are not shown; --scene chooses it|scenes have objects that are not shown; --scene chooses one}";
     model.warn_counted(Place::Path("scenes".into()), others.count() as u64, words);
 }
 

@@ -56,21 +56,28 @@ impl Tree {
         Ok(Self { parents, order })
     }
 
-    /// Returns each node's matrix to the world.
-    pub fn world_matrices(&self, root: &Root, pose: &[Override]) -> Vec<DMat4> {
+    /// Returns each node's matrix to the world, in which the file's origin is at `center`.
+    pub fn world_matrices(&self, root: &Root, pose: &[Override], center: DVec3) -> Vec<DMat4> {
         let mut world = vec![DMat4::IDENTITY; self.parents.len()];
         for &n in &self.order {
             let local = local_matrix(&root.nodes[n], &pose[n]);
-            world[n] = self.parents[n].map_or(local, |p| world[p] * local);
+            let moved = || DMat4::from_translation(center) * local;
+            world[n] = self.parents[n].map_or_else(moved, |p| world[p] * local);
         }
         world
     }
 
-    /// Returns the nodes of the default scene (or the first one if that does not exist, or all nodes of a file without
-    /// scenes), in drawing order: depth first, as in the file. A node below another one of the scene appears once; the
+    /// Returns the nodes of the chosen scene, else of the default scene (or the first one if that does not exist, or all
+    /// nodes of a file without scenes), in drawing order: depth first, as in the file. A node below another one of the scene appears once; the
     /// nodes of the scene that are not roots are passed to `odd`.
-    pub fn scene_nodes(&self, root: &Root, mut odd: impl FnMut(usize)) -> Vec<usize> {
-        let scene = root.scenes.get(root.scene.map_or(0, Whole::index)).or(root.scenes.first());
+    pub fn scene_nodes(
+        &self,
+        root: &Root,
+        chosen: Option<usize>,
+        mut odd: impl FnMut(usize),
+    ) -> Vec<usize> {
+        let scene = chosen.unwrap_or_else(|| root.scene.map_or(0, Whole::index));
+        let scene = root.scenes.get(scene).or(root.scenes.first());
         let roots: Vec<usize> = match scene {
             Some(scene) => scene.nodes.iter().map(|n| n.index()).collect(),
             None => (0..self.parents.len()).filter(|&n| self.parents[n].is_none()).collect(),

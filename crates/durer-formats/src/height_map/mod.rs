@@ -185,7 +185,7 @@ fn check_size(columns: u64, rows: u64, limits: &Limits) -> Result<usize> {
     let count = columns.saturating_mul(rows);
     let limit = HeightField::MAX_POINTS.min(limits.decoded_bytes / 8);
     if count > limit {
-        let what = "points of a height map";
+        let what = "number of points of a height map";
         return Err(Error::Limit { place: Place::Whole, what, value: count, limit });
     }
     if count == 0 {

@@ -13,6 +13,7 @@ pub(super) struct Repairs {
     pub short_faces: Tally,
     pub non_finite: Tally,
     pub sloppy: Tally,
+    pub commas: Tally,
     pub unnamed_parts: Tally,
     pub byte_colors: bool,
     /// Corners with references to texture coordinates or normals in a file without any.
@@ -69,6 +70,7 @@ impl Repairs {
                 &self.sloppy,
                 "{number has something behind it|numbers have something behind them}, which was ignored",
             ),
+            (&self.commas, crate::text::COMMAS),
             (
                 &self.no_attributes,
                 "{corner names|corners name} texture coordinates or normals, of which the file has none",

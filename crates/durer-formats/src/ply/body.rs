@@ -68,6 +68,11 @@ impl<'a> Ascii<'a> {
     pub fn new(cursor: Cursor<'a>) -> Self {
         Self { cursor, ended: false }
     }
+
+    /// Returns the numbers with decimal commas that have been read.
+    pub fn commas(self) -> crate::text::Tally {
+        self.cursor.commas
+    }
 }
 
 impl Values for Ascii<'_> {

@@ -48,7 +48,7 @@ impl Database {
     fn page(&mut self, bytes: &[u8]) -> Result<u32> {
         if self.pages >= MOST_PAGES {
             let (value, limit) = (u64::from(self.pages) + 1, MOST_PAGES.into());
-            let (place, what) = (Place::Whole, "pages of a database");
+            let (place, what) = (Place::Whole, "number of pages of a database");
             return Err(Error::Limit { place, what, value, limit });
         }
         if self.pages + 1 == LOCKED {
@@ -89,7 +89,12 @@ impl Database {
     fn row(&mut self, number: i64, record: &[u8]) -> Result<Vec<u8>> {
         if record.len() > LONGEST {
             let (value, limit) = (record.len() as u64, LONGEST as u64);
-            return Err(Error::Limit { place: Place::Whole, what: "a row", value, limit });
+            return Err(Error::Limit {
+                place: Place::Whole,
+                what: "size of a row in bytes",
+                value,
+                limit,
+            });
         }
         let mut cell = Vec::new();
         varint(&mut cell, record.len() as u64);
@@ -401,7 +406,7 @@ mod tests {
             assert_eq!((tables.len(), tables[0].root), (1, root));
             let mut rows = database.rows(root);
             for i in 0..count {
-                let row = rows.next(&database).expect("read").expect("a row");
+                let row = rows.next(&database).expect("read").expect("size of a row in bytes");
                 let expected = record(&[Value::Integer(i as i64), Value::Blob(&blob(i))]);
                 assert_eq!((row.number, &row.record[..]), (i as i64 + 1, &expected[..]));
             }

@@ -22,6 +22,7 @@ pub(super) fn read(text: &[u8], limits: &Limits) -> Result<Model> {
         ascii.line(&mut cursor)?;
         cursor.next_line();
     }
+    ascii.decimal_commas.append(std::mem::take(&mut cursor.commas));
     ascii.end(&mut model, &cursor)?;
     let origin = place::origin(&ascii.points);
     let parts = ascii.parts();
@@ -287,10 +288,7 @@ impl<'a> Ascii<'a> {
                 &self.bad_vertices,
                 "{vertex is not three numbers; its facet was|vertices are not three numbers; their facets were} left out",
             ),
-            (
-                &self.decimal_commas,
-                "{number has a decimal comma|numbers have decimal commas}; {it was read as a point|they were read as points}",
-            ),
+            (&self.decimal_commas, crate::text::COMMAS),
         ] {
             model.warn_of(tally, message);
         }

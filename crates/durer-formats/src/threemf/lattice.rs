@@ -81,7 +81,12 @@ pub(super) fn mesh(
     let limit = limit.min(u64::from(u32::MAX / 4));
     if value > limit {
         let place = crate::Place::Whole;
-        return Err(Error::Limit { place, what: "triangles of a beam lattice", value, limit });
+        return Err(Error::Limit {
+            place,
+            what: "number of triangles of a beam lattice",
+            value,
+            limit,
+        });
     }
     let mut builder = Builder::new(sides);
     for beam in lattice.beams.iter().filter(seen) {

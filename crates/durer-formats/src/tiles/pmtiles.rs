@@ -65,7 +65,7 @@ impl<W: Write + Seek> PmTiles<W> {
     pub fn add(&mut self, id: u64, tile: &[u8]) -> Result<()> {
         let length = u32::try_from(tile.len()).map_err(|_| {
             let (value, limit) = (tile.len() as u64, u32::MAX.into());
-            Error::Limit { place: Place::Whole, what: "bytes of a tile", value, limit }
+            Error::Limit { place: Place::Whole, what: "size of a tile in bytes", value, limit }
         })?;
         self.addressed += 1;
         let known = self.small.get(tile).copied();

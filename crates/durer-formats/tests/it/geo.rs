@@ -768,7 +768,12 @@ fn errors_and_warnings_name_the_feature() {
     let topology = r#"{"type":"Topology","arcs":[[[0,0],[1,1]]],"objects":{"o":{"type":"GeometryCollection","geometries":[
         {"type":"LineString","arcs":[0]},{"type":"LineString","id":"k","arcs":[9]}]}}}"#;
     let told = read_all(topology.as_bytes(), "").expect_err("no arc").to_string();
-    assert!(told.starts_with("line 2, column 80, feature 2 (id k): there are 1 arcs"), "{told}");
+    assert!(
+        told.starts_with(
+            "line 2, column 80, feature 2 (id k): there is no arc of this number: there is 1"
+        ),
+        "{told}"
+    );
     let table = "name,wkt\nA,POINT (1 2)\nB,POINT (1)\n";
     let told = error(GeoFormat::Csv, table.as_bytes());
     assert!(told.starts_with("line 3, feature 2: a position of 2 numbers"), "{told}");

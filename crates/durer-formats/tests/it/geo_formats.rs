@@ -141,9 +141,9 @@ POLYGON ((11 20.5, 11 20, 10 20, 12 20.5, 11 20.5))\nPOINT (11 21)\n"
         (
             "[[0,1]]",
             "[[0,9]]",
-            "line 3, column 60, feature 1 (id 7): there are 3 arcs, and none of this number",
+            "line 3, column 60, feature 1 (id 7): there is no arc of this number: there are 3",
         ),
-        ("[[0,1]]", "[[0,0.5]]", "none of this number"),
+        ("[[0,1]]", "[[0,0.5]]", "no arc of this number"),
         (
             "\"arcs\":[[[0,0]",
             "\"arcs\":[[[0]",
@@ -177,7 +177,7 @@ fn an_arc_that_is_told_very_often_is_refused() {
     let text = format!(
         "{{\"type\":\"Topology\",\"arcs\":[[{arc}]],\"objects\":{{\"a\":{{\"type\":\"GeometryCollection\",\"geometries\":[{lines}]}}}}}}"
     );
-    assert!(error(text.as_bytes(), "").contains("is above the limit of 100000000"));
+    assert!(error(text.as_bytes(), "").contains(", above the limit of 100000000"));
 }
 
 #[test]

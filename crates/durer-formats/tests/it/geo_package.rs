@@ -107,7 +107,7 @@ fn all_layers_are_read_or_the_named_one() {
         [
             "layer seen: left out: it is a view, which only a database can work out",
             "layer photo: left out: it holds pixels",
-            "1 tables without geometries, notes, are left out; --layer names one",
+            "1 table without geometries is left out; --layer names one: notes",
             "its 2 layers, Städte, lines, become one; --layer names one"
         ]
     );

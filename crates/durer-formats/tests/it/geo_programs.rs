@@ -155,8 +155,8 @@ fn drawings_and_lists_of_numbers_are_named() {
 fn other_formats_of_json_are_named() {
     for (text, name) in [
         (
-            r#"{"geometryType":"esriGeometryPoint","features":[{"attributes":{},"geometry":{"x":1,"y":2}}]}"#,
-            "this is JSON of ArcGIS (Esri)",
+            r#"{"error":{"code":400,"message":"Invalid URL"}}"#,
+            "this is no map but the error of a server: Invalid URL",
         ),
         (
             r#"{"version":0.6,"generator":"Overpass API","elements":[]}"#,
@@ -225,4 +225,80 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
     let mut reader = Reader::new(GeoFormat::GeoJsonSeq, cut.as_bytes()).expect("a reader");
     reader.skip_failures();
     assert!(reader.next_feature().expect("the first").is_some() && reader.next_feature().is_err());
+}
+
+#[test]
+fn rows_that_decimal_commas_split_are_refused() {
+    let told = error("name,lon,lat\nA,8.5,47\nB,8,5,47,2\n".as_bytes(), "a.csv");
+    let start = "line 3, feature 2: the row has 5 values for 3 columns, as if its numbers had decimal commas";
+    assert!(told.starts_with(start), "{told}");
+    for text in [
+        "lon;lat\n8,5;47,2\n",
+        "lon,lat\n\"8,5\",\"47,2\"\n",
+        "lon\tlat\n8,5\t47,2\n",
+        "lon,lat\n8.5,47.2,\n",
+    ] {
+        let (features, _) = read(text.as_bytes(), "a.csv");
+        let bounds = features[0].geometry.as_ref().and_then(|g| g.bounds()).expect("a point");
+        assert_eq!(bounds.min().to_array(), [8.5, 47.2], "{text}");
+    }
+}
+
+#[test]
+fn feature_sets_of_arcgis_are_read() {
+    let set = |head: &str, features: &str| format!(r#"{{{head}"features":[{features}]}}"#);
+    let head = r#""displayFieldName":"n","geometryType":"esriGeometryPolygon","spatialReference":{"wkid":102100,"latestWkid":3857},"#;
+    // Two outer rings run clockwise, the hole in the first the other way round.
+    let rings = "[[0,0],[0,9],[9,9],[9,0],[0,0]],[[20,0],[20,5],[25,5],[25,0],[20,0]],[[1,1],[2,1],[2,2],[1,2],[1,1]]";
+    let two = format!(
+        r#"{{"attributes":{{"n":"A","OBJECTID":7}},"geometry":{{"rings":[{rings}]}}}},{{"attributes":{{"n":"B"}},"geometry":null}}"#
+    );
+    let (features, warnings) = read(set(head, &two).as_bytes(), "a.json");
+    assert_eq!((features.len(), warnings), (2, vec![]));
+    assert_eq!((features[0].srid, &features[1].geometry), (Some(3857), &None));
+    assert_eq!(features[0].properties.as_deref(), Some(r#"{"n":"A","OBJECTID":7}"#));
+    let text = wkt(&features[..1]);
+    let first = "((0 0, 0 9, 9 9, 9 0, 0 0), (1 1, 2 1, 2 2, 1 2, 1 1))";
+    let second = "((20 0, 20 5, 25 5, 25 0, 20 0))";
+    assert!(text.contains(&format!("MULTIPOLYGON ({first}, {second})")), "{text}");
+    let mut reader =
+        Reader::new(GeoFormat::GeoJson, set(head, &two).leak().as_bytes()).expect("a reader");
+    reader.next_feature().expect("a feature");
+    assert_eq!(reader.system().code, Some(3857));
+
+    for (geometry, expected) in [
+        (r#"{"x":1,"y":2.5}"#, "POINT (1 2.5)"),
+        (r#"{"x":1,"y":2,"z":3,"m":4}"#, "POINT ZM (1 2 3 4)"),
+        (r#"{"x":"NaN","y":"NaN"}"#, "POINT EMPTY"),
+        (r#"{"points":[[1,2],[3,4]]}"#, "MULTIPOINT ((1 2), (3 4))"),
+        (r#"{"paths":[[[1,2],[3,4]]]}"#, "LINESTRING (1 2, 3 4)"),
+        (r#"{"hasM":true,"paths":[[[1,2,9],[3,4,8]]]}"#, "LINESTRING M (1 2 9, 3 4 8)"),
+        (
+            r#"{"hasZ":true,"hasM":true,"paths":[[[1,2,5,9],[3,4,5,8]]]}"#,
+            "LINESTRING ZM (1 2 5 9, 3 4 5 8)",
+        ),
+        (r#"{"paths":[[[1,2],[3,4]],[[5,6],[7,8]]]}"#, "MULTILINESTRING ((1 2, 3 4), (5 6, 7 8))"),
+        (
+            r#"{"rings":[[[0,0],[0,1],[1,1],[0,0]]],"spatialReference":{"wkid":4326}}"#,
+            "POLYGON ((0 0, 0 1, 1 1, 0 0))",
+        ),
+        (r#"{"xmin":0,"ymin":1,"xmax":2,"ymax":3}"#, "POLYGON ((0 1, 2 1, 2 3, 0 3, 0 1))"),
+    ] {
+        let (features, _) = read(geometry.as_bytes(), "a.json");
+        assert!(wkt(&features).contains(expected), "{geometry}: {}", wkt(&features));
+    }
+    let points = r#"{"attributes":{"name":"Bern"},"geometry":{"x":1,"y":true}}"#;
+    let told = error(set(head, points).as_bytes(), "a.json");
+    assert!(told.contains("feature 1 (name Bern): a number is expected"), "{told}");
+    let curve = r#"{"geometry":{"curveRings":[]}}"#;
+    assert!(error(set(head, curve).as_bytes(), "a.json").contains("returnTrueCurves=false"));
+    let cut = set(head, "").replace("}", "").replace("]", "],\"exceededTransferLimit\":true}");
+    let cut = cut.replace("3857,", "3857},");
+    let (features, warnings) = read(cut.as_bytes(), "a.json");
+    assert!(features.is_empty() && warnings[0].contains("resultOffset"), "{warnings:?}");
+    // A set without a system has an unknown one, unlike GeoJSON.
+    let bare = set(r#""geometryType":"esriGeometryPoint","#, r#"{"geometry":{"x":1,"y":2}}"#);
+    let mut reader = Reader::new(GeoFormat::GeoJson, bare.as_bytes()).expect("a reader");
+    reader.next_feature().expect("a feature");
+    assert!(reader.system().is_unknown());
 }

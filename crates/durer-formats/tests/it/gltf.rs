@@ -143,11 +143,50 @@ fn other_scenes_are_told() {
         let model = read(&triangle(&format!(r#""scenes": [{scenes}], {members}"#))).unwrap();
         model.warnings.iter().map(ToString::to_string).collect::<String>()
     };
-    let one = "scenes: 1 further scene has objects that are not shown";
+    let one = "scenes: 1 further scene has objects that are not shown; --scene chooses it";
     assert_eq!(told(r#"{"nodes": [0]}, {"nodes": [2]}"#), one);
-    let two = "scenes: 2 further scenes have objects that are not shown";
+    let two = "scenes: 2 further scenes have objects that are not shown; --scene chooses one";
     assert_eq!(told(r#"{"nodes": [0]}, {"nodes": [0, 2]}, {"nodes": [2]}"#), two);
     assert_eq!(told(r#"{"nodes": [0, 2]}, {"nodes": [2]}, {"nodes": [3]}, {}"#), "");
+}
+
+#[test]
+fn scenes_are_chosen_by_name_or_number() {
+    let nodes = r#""nodes": [{"name": "a", "mesh": 0}, {"name": "b", "mesh": 0}, {"name": "c", "mesh": 0}]"#;
+    let scenes = r#""scenes": [{"nodes": [0]}, {"name": "0", "nodes": [1]}, {"nodes": [2]}]"#;
+    let file = triangle(&format!(r#""scene": 2, {scenes}, {nodes}"#));
+    let shown = |scene: Option<&str>| {
+        let options = ReadOptions { scene: scene.map(str::to_owned), ..ReadOptions::default() };
+        durer_formats::gltf::read(file.as_bytes(), &NoResources, &options).map(|model| {
+            assert_eq!(model.scenes, ["scene0", "0", "scene2"]);
+            assert_eq!(model.warnings.is_empty(), scene.is_some(), "{:?}", model.warnings);
+            model.scene.instances.iter().map(|i| i.name.clone()).collect::<String>()
+        })
+    };
+    for (scene, name) in [(None, "c"), (Some("scene0"), "a"), (Some("0"), "b"), (Some("2"), "c")] {
+        assert_eq!(shown(scene).unwrap(), name, "{scene:?}");
+    }
+    let told = shown(Some("3")).unwrap_err().to_string();
+    assert_eq!(told, "scenes: there is no scene `3`: scene0, 0, scene2");
+}
+
+#[test]
+fn the_centre_of_a_model_on_the_globe_is_added() {
+    let file = |extension: &str| {
+        triangle(&format!(
+            r#"{extension} "nodes": [{{"mesh": 0, "translation": [1, 2, 3], "children": [1]}}, {{"mesh": 0}}]"#
+        ))
+    };
+    let places = |text: &str| {
+        let model = read(text).unwrap();
+        assert!(!model.warnings.iter().any(|w| w.message.contains("RTC")), "{:?}", model.warnings);
+        let at = |i: &durer::scene::Instance| i.world_from_mesh.w_axis.truncate().to_array();
+        model.scene.instances.iter().map(at).collect::<Vec<_>>()
+    };
+    let rtc = r#""extensionsUsed": ["CESIUM_RTC"], "extensions": {"CESIUM_RTC": {"center": [4e6, 5e5, 5.5e6]}},"#;
+    assert_eq!(places(&file("")), [[1.0, 2.0, 3.0]; 2]);
+    // Its z axis points up.
+    assert_eq!(places(&file(rtc)), [[4_000_001.0, 5_500_002.0, -499_997.0]; 2]);
 }
 
 #[test]

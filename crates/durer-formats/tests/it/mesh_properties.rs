@@ -208,3 +208,33 @@ fn broken_files_never_panic() {
     }
     assert!((100..3900).contains(&readable), "{readable} of 4000 were readable");
 }
+
+#[test]
+fn decimal_commas_are_points() {
+    let expected = [[0.5, 0.0, 0.0], [1.25, 0.0, 0.0], [0.0, 2.0, -0.125]];
+    let files = [
+        ("a.obj", "v 0,5 0,0 0,0\nv 1,25 0 0,0\nv 0,0 2,0 -0,125\nf 1 2 3\n"),
+        ("a.off", "OFF\n3 1 0\n0,5 0 0\n1,25 0 0\n0 2 -0,125\n3 0 1 2\n"),
+        (
+            "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0,5 0 0\n1,25 0 0\n0 2 -0,125\n3 0 1 2\n",
+        ),
+        (
+            "a.stl",
+            "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0,5 0 0\nvertex 1,25 0 0\nvertex 0 2 -0,125\nendloop\nendfacet\nendsolid\n",
+        ),
+        ("a.xyz", "0,5 0,0 0,0\n1,25 0 0,0\n0,0 2,0 -0,125\n"),
+        ("b.xyz", "0,5;0,0;0,0\n1,25;0;0,0\n0,0;2,0;-0,125\n"),
+    ];
+    for (name, text) in files {
+        let model = read(text.as_bytes(), name).expect(name);
+        let scene = &model.scene;
+        let at = |p: &Vec3| scene.instances[0].world_from_mesh.transform_point3(p.as_dvec3());
+        let found: Vec<_> = scene.meshes[0].positions.iter().map(|p| at(p).to_array()).collect();
+        assert_eq!(found, expected, "{name}: {:?}", model.warnings);
+        let told = model.warnings.iter().any(|w| w.message.contains("decimal comma"));
+        assert!(told || name.ends_with("xyz"), "{name}: {:?}", model.warnings);
+    }
+    let lists = read(b"1,2,3\n4,5,6\n7,8,9\n", "a.xyz").expect("a list");
+    assert_eq!(lists.scene.meshes[0].positions[1], Vec3::new(4.0, 5.0, 6.0));
+}

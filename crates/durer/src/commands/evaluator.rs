@@ -103,7 +103,7 @@ fn check(steps: u32) -> Result<()> {
         1..=MAX_STEPS => Ok(()),
         _ => {
             let (value, limit) = (u64::from(steps), u64::from(MAX_STEPS));
-            Err(Error::Limit { what: "steps of an evaluator", value, limit })
+            Err(Error::Limit { what: "number of steps of an evaluator", value, limit })
         }
     }
 }

@@ -211,7 +211,11 @@ pub fn execute_traced(
         };
         done += 1;
         if done > MAX_COMMANDS {
-            return Err(Error::Limit { what: "commands", value: done, limit: MAX_COMMANDS });
+            return Err(Error::Limit {
+                what: "number of commands",
+                value: done,
+                limit: MAX_COMMANDS,
+            });
         }
         let depth = waiting.len() - 1;
         let &Command::Call(list) = command else {
@@ -225,7 +229,11 @@ pub fn execute_traced(
         if depth >= MAX_NESTING {
             t.step(|| Step::Refused { list, depth });
             let (value, limit) = (waiting.len() as u64, MAX_NESTING as u64);
-            return Err(Error::Limit { what: "nesting of display lists", value, limit });
+            return Err(Error::Limit {
+                what: "depth of display lists in each other",
+                value,
+                limit,
+            });
         }
         waiting.push(lists.commands(list)?.iter());
         t.step(|| Step::Called { list, depth: depth + 1 });
@@ -242,7 +250,7 @@ fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<
         Command::MultiplyModelView(matrix) => p.model_view = finite(p.model_view * *matrix)?,
         Command::PushModelView if p.stack.len() >= MAX_STACK => {
             let (value, limit) = (p.stack.len() as u64 + 1, MAX_STACK as u64);
-            return Err(Error::Limit { what: "matrices on the stack", value, limit });
+            return Err(Error::Limit { what: "number of matrices on the stack", value, limit });
         }
         Command::PushModelView => p.stack.push(p.model_view),
         Command::PopModelView => {

@@ -162,7 +162,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     }
     if segments.len() > MOST {
         let (value, limit) = (segments.len() as u64, MOST as u64);
-        return Err(Error::Limit { what: "segments to be explained", value, limit });
+        return Err(Error::Limit { what: "number of segments to be explained", value, limit });
     }
     let steps = record(cap, |t| crossings(&segments, &Options::default(), t))?;
     let (queue, status, found) = (Vec::new(), Vec::new(), Vec::new());

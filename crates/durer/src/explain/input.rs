@@ -86,7 +86,7 @@ impl Input {
         let size = self.size();
         if size > MAX_POINTS {
             let (value, limit) = (size as u64, MAX_POINTS as u64);
-            return Err(Error::Limit { what: "points to be explained", value, limit });
+            return Err(Error::Limit { what: "number of points to be explained", value, limit });
         }
         let wrong = match self {
             Self::Example(_) => None,

@@ -30,7 +30,7 @@ impl PixelMask {
         let pixels = u64::from(width) * u64::from(height);
         if pixels > MAX_PIXELS {
             return Err(Error::TooLarge {
-                what: "pixels of a mask",
+                what: "number of pixels of a mask",
                 value: pixels,
                 limit: MAX_PIXELS,
             });

@@ -23,7 +23,7 @@ pub fn regions(
 ) -> Result<Vec<Region>> {
     let count = (field.columns() * field.rows()) as u64;
     if count > MOST {
-        return Err(Error::Limit { what: "cells to fill", value: count, limit: MOST });
+        return Err(Error::Limit { what: "number of cells to fill", value: count, limit: MOST });
     }
     let [columns, rows] = front_to_back(field, camera);
     let [low, high] = field.range().unwrap_or_default();

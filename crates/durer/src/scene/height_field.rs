@@ -367,14 +367,19 @@ fn check(size: [usize; 2], x: [f64; 2], z: [f64; 2]) -> Result<usize> {
     }
     if count > HeightField::MAX_POINTS {
         let limit = HeightField::MAX_POINTS;
-        return Err(Error::Limit { what: "points of a height field", value: count, limit });
+        return Err(Error::Limit {
+            what: "number of points of a height field",
+            value: count,
+            limit,
+        });
     }
     for (name, [first, last], n) in [("x range", x, size[0]), ("z range", z, size[1])] {
         let extent = last - first;
-        let grows = extent > 0.0 || (n == 1 && extent == 0.0);
+        let grows = extent >= LARGEST.recip() || (n == 1 && extent == 0.0);
         if !grows || first.abs().max(last.abs()) > LARGEST {
             let value = format!("{first} … {last}");
-            return Err(Error::parameter(name, value, "two finite numbers, the first the smaller"));
+            let expected = "two numbers within ±10¹⁰⁰, the first the smaller by 10⁻¹⁰⁰ or more";
+            return Err(Error::parameter(name, value, expected));
         }
         // Neighbours that are the same number would be no grid.
         if n > 1 && between([first, last], 1, n) <= first {

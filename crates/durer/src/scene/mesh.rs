@@ -190,7 +190,11 @@ impl Mesh {
     pub fn check(&self) -> Result<()> {
         let count = self.positions.len();
         if u32::try_from(count).is_err() {
-            return Err(Error::Limit { what: "vertices", value: count as u64, limit: 1 << 32 });
+            return Err(Error::Limit {
+                what: "number of vertices",
+                value: count as u64,
+                limit: 1 << 32,
+            });
         }
         let lengths = [self.normals.len(), self.tangents.len(), self.colors.len()];
         let sets = self.tex_coords.iter().map(Vec::len);

@@ -104,7 +104,11 @@ impl Layout {
         let cells = columns.saturating_mul(rows);
         if cells > MAX_CELLS {
             let limit = MAX_CELLS as u64;
-            return Err(Error::TooLarge { what: "viewports", value: cells as u64, limit });
+            return Err(Error::TooLarge {
+                what: "number of viewports",
+                value: cells as u64,
+                limit,
+            });
         }
         if names.iter().any(|n| n.is_empty()) || names.is_empty() {
             return Err(Error::parameter("layout", names.join(","), "names parted by commas"));

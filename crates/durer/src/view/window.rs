@@ -41,7 +41,7 @@ impl PixelRect {
         let side = |value: u32| {
             let limit = i32::MAX as u64;
             i32::try_from(value).map_err(|_| Error::TooLarge {
-                what: "pixels a side",
+                what: "number of pixels a side",
                 value: value.into(),
                 limit,
             })

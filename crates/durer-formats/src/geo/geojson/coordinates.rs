@@ -15,7 +15,7 @@ pub struct Geometries {
 
 /// Shape that the positions of one run must form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Run {
+pub enum Run {
     Points,
     Line,
     Ring,
@@ -133,7 +133,7 @@ impl Geometries {
     }
 
     /// Returns an array of positions; empty if it had to be left out.
-    fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
+    pub fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
         // Computing a place reads all of the text before it, so places are computed only when needed.
         let start = cursor.clone();
         let place = || start.clone().place();

@@ -1,9 +1,11 @@
-//! GeoJSON (RFC 7946), read and written as a stream.
+//! GeoJSON (RFC 7946), read and written as a stream; also feature sets of ArcGIS, only read.
 
 mod coordinates;
+mod esri;
 mod object;
 mod read;
 mod scan;
+mod stream;
 mod write;
 
 pub(super) use coordinates::{finish_line, finish_ring};

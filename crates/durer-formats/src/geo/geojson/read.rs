@@ -1,137 +1,14 @@
 //! Features from a stream; only the current feature is held in memory.
 
 use super::coordinates::{Geometries, further_members};
+use super::esri;
 use super::object::{RawMember, Text, kind};
-use super::scan::{Progress, Scan};
+use super::stream::{Piece, Stream};
 use crate::geo::numbered::{Label, name};
 use crate::geo::system::{self, System};
 use crate::geo::{Feature, Member, Warnings};
 use crate::{Error, Place, Result};
 use std::io::Read;
-
-/// Bytes requested at a time.
-const CHUNK: usize = 64 << 10;
-
-/// A value cut out of the stream, with line and column of its first byte.
-#[derive(Debug, Default)]
-struct Piece {
-    bytes: Vec<u8>,
-    start: (u64, u64),
-}
-
-impl Piece {
-    fn text(&self) -> Text<'_> {
-        Text::new(&self.bytes, self.start)
-    }
-}
-
-/// The bytes of a source, with the place of the next one.
-struct Stream<R> {
-    source: R,
-    chunk: Vec<u8>,
-    at: usize,
-    /// Line and column of the next byte, from 1.
-    here: (u64, u64),
-    /// True if values end with their line.
-    by_lines: bool,
-}
-
-impl<R: Read> Stream<R> {
-    fn peek(&mut self) -> Result<Option<u8>> {
-        if self.at == self.chunk.len() {
-            self.refill()?;
-        }
-        Ok(self.chunk.get(self.at).copied())
-    }
-
-    /// Reads the bytes that are available, so that a slow source is read as they arrive.
-    fn refill(&mut self) -> Result<()> {
-        self.at = 0;
-        self.chunk.resize(CHUNK, 0);
-        loop {
-            match self.source.read(&mut self.chunk) {
-                Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
-                read => {
-                    self.chunk.truncate(*read.as_ref().unwrap_or(&0));
-                    return read.map(drop).map_err(Error::from);
-                }
-            }
-        }
-    }
-
-    fn bump(&mut self, byte: u8) {
-        self.at += 1;
-        self.here =
-            if byte == b'\n' { (self.here.0 + 1, 1) } else { (self.here.0, self.here.1 + 1) };
-    }
-
-    fn error(&self, message: impl Into<String>) -> Error {
-        Error::line(self.here.0, self.here.1, message)
-    }
-
-    /// Returns the next byte that is not a blank.
-    fn next(&mut self) -> Result<Option<u8>> {
-        while let Some(byte) = self.peek()? {
-            if !matches!(byte, b' ' | b'\t' | b'\r' | b'\n') {
-                return Ok(Some(byte));
-            }
-            self.bump(byte);
-        }
-        Ok(None)
-    }
-
-    /// Steps over a byte if it comes next.
-    fn take(&mut self, byte: u8) -> Result<bool> {
-        let found = self.next()? == Some(byte);
-        if found {
-            self.bump(byte);
-        }
-        Ok(found)
-    }
-
-    fn expect(&mut self, byte: u8, what: &str) -> Result<()> {
-        if self.take(byte)? { Ok(()) } else { Err(self.unexpected(what)?) }
-    }
-
-    fn unexpected(&mut self, what: &str) -> Result<Error> {
-        let found = match self.next()? {
-            None => "the end of the file".to_owned(),
-            Some(byte @ 0x21..=0x7e) => format!("`{}`", char::from(byte)),
-            Some(byte) => format!("byte {byte:#04x}"),
-        };
-        Ok(self.error(format!("{what} is expected, not {found}")))
-    }
-
-    /// Cuts out the next value.
-    fn value(&mut self, what: &str) -> Result<Piece> {
-        self.next()?;
-        let mut piece = Piece { bytes: Vec::new(), start: self.here };
-        let mut scan = Scan::default();
-        while let Some(byte) = self.peek()? {
-            let progress = scan.feed(byte);
-            match progress {
-                Progress::Over => break,
-                Progress::TooDeep => return Err(self.error("this is nested too deep")),
-                Progress::More | Progress::Last => {}
-            }
-            if byte == b'\n' && self.by_lines {
-                let message =
-                    "the line ends within a value, but each feature before is on one line";
-                return Err(self.error(message));
-            }
-            piece.bytes.push(byte);
-            self.bump(byte);
-            if progress == Progress::Last {
-                return Ok(piece);
-            }
-        }
-        if piece.bytes.is_empty() {
-            return Err(self.unexpected(what)?);
-        }
-        let cut = matches!(piece.bytes.first(), Some(b'{' | b'[' | b'"'));
-        if cut { Err(self.error("the file ends within a value")) } else { Ok(piece) }
-    }
-}
 
 /// State of the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -154,6 +31,8 @@ pub struct Reader<R> {
     /// Features on lines of their own, since another document came.
     in_lines: u64,
     systems: Systems,
+    /// What an Esri feature set states for all its geometries; `None` for other documents.
+    esri: Option<esri::Given>,
     /// True if the text of the feature read last has been cut out of the stream.
     is_cut: bool,
     /// Number of features that have begun.
@@ -211,10 +90,8 @@ const LINES: u64 = 2;
 
 impl<R: Read> Reader<R> {
     pub fn new(source: R) -> Self {
-        let (chunk, here) = (Vec::new(), (1, 1));
-        let stream = Stream { source, chunk, at: 0, here, by_lines: false };
         Self {
-            stream,
+            stream: Stream::new(source),
             state: State::Between,
             geometries: Geometries::default(),
             open: Vec::new(),
@@ -223,6 +100,7 @@ impl<R: Read> Reader<R> {
             documents: 0,
             in_lines: 0,
             systems: Systems::default(),
+            esri: None,
             is_cut: false,
             count: 0,
             within: None,
@@ -319,7 +197,7 @@ impl<R: Read> Reader<R> {
             return Ok(false);
         }
         self.documents += 1;
-        self.systems.collection = None;
+        (self.systems.collection, self.esri) = (None, None);
         self.collection = self.stream.here;
         self.open.clear();
         self.stream.expect(b'{', "a GeoJSON object")?;
@@ -360,8 +238,16 @@ impl<R: Read> Reader<R> {
                 let (text, warnings) = (value.text(), &mut self.geometries.warnings);
                 Some(self.systems.of_member(&text.checked()?, text.place(), warnings))
             }
-            None => None,
+            None => {
+                let stated = self.open.iter().find(|(name, _)| name.bytes == esri::SYSTEM);
+                stated.map(|(_, value)| esri::system(&value.bytes))
+            }
         };
+        if self.open.iter().any(|(name, _)| esri::is_of_set(&name.bytes)) {
+            let members: Vec<RawMember<'_>> =
+                self.open.iter().map(|(n, v)| (n.text(), v.text())).collect();
+            self.esri = Some(esri::Given::default().of(&members));
+        }
         Ok(())
     }
 
@@ -374,6 +260,9 @@ impl<R: Read> Reader<R> {
     fn end_collection(&mut self) -> Result<()> {
         let open = std::mem::take(&mut self.open);
         let kind = open.iter().find(|(name, _)| name.bytes == b"\"type\"");
+        if kind.is_none() && self.end_of_set(&open) {
+            return Ok(());
+        }
         if kind.is_none_or(|(_, value)| value.bytes != b"\"FeatureCollection\"") {
             let (line, column) = self.collection;
             return Err(Error::line(
@@ -393,6 +282,21 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(())
+    }
+
+    /// Ends the feature set of Esri; returns whether it is one.
+    fn end_of_set(&mut self, open: &[(Piece, Piece)]) -> bool {
+        let is_set = open.iter().any(|(name, _)| esri::is_of_set(&name.bytes));
+        for (name, value) in open.iter().filter(|_| is_set || self.esri.is_some()) {
+            if name.bytes == b"\"exceededTransferLimit\"" {
+                let place = value.text().place();
+                esri::tell_limit(&value.bytes, place, &mut self.geometries.warnings);
+            }
+            // A system that is stated behind the features.
+            let late = name.bytes == esri::SYSTEM && self.systems.collection.is_none();
+            self.members.extend(late.then(|| esri::system(&value.bytes).member()).flatten());
+        }
+        is_set || self.esri.is_some()
     }
 
     /// Returns the document whose members have been read.
@@ -420,6 +324,13 @@ impl<R: Read> Reader<R> {
         let own = further.into_iter().find(|member| member.name.as_bytes() == CRS);
         let warnings = &mut self.geometries.warnings;
         let own = own.map(|own| self.systems.of_member(&own.value, whole.place(), warnings));
+        let own = if kind(members).is_some() {
+            own
+        } else {
+            // Without a statement it is not longitude and latitude, as in GeoJSON.
+            let common = || self.systems.collection.is_none().then(System::default);
+            own.or_else(|| esri::own_system(members)).or_else(common)
+        };
         self.systems.stamp(&mut feature, own);
         Ok(feature)
     }
@@ -433,17 +344,21 @@ impl<R: Read> Reader<R> {
         if self.count == 1 && self.state == State::Between && value(b"\"geometry\"").is_none() {
             self.within = None;
         } else if let Some((label, _)) = &mut self.within {
+            let properties = value(b"\"properties\"").or_else(|| value(b"\"attributes\""));
             let id = value(b"\"id\"").and_then(|id| std::str::from_utf8(id.as_bytes()).ok());
-            label.name = name(id, || value(b"\"properties\"").map(fields).unwrap_or_default());
+            label.name = name(id, || properties.map(fields).unwrap_or_default());
         }
     }
 
     fn bare(&mut self, whole: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
         let Some(kind) = kind(members) else {
-            let message = "a GeoJSON object needs the member \"type\", a string".to_owned();
-            let message =
-                foreign(members).map_or(message, |(what, hint)| format!("this is {what}; {hint}"));
-            return Err(whole.error(message));
+            if self.esri.is_some() || esri::is_one(members) {
+                let given = *self.esri.get_or_insert_default();
+                return esri::feature(&mut self.geometries, members, given);
+            }
+            let message = foreign(members).or_else(|| esri::error_of_server(members));
+            let needed = "a GeoJSON object needs the member \"type\", a string";
+            return Err(whole.error(message.unwrap_or_else(|| needed.to_owned())));
         };
         match &kind[..] {
             "Feature" => self.members_of_feature(whole, members),
@@ -515,18 +430,12 @@ fn fields(object: Text<'_>) -> Vec<Member> {
     members.map(|(name, value)| Member { name: text(name), value: text(value) }).collect()
 }
 
-/// Returns the name of another format of JSON that an object without a type belongs to, and advice.
-fn foreign(members: &[RawMember<'_>]) -> Option<(&'static str, &'static str)> {
+/// Returns a message about OpenStreetMap's JSON.
+fn foreign(members: &[RawMember<'_>]) -> Option<String> {
     let has = |name: &str| members.iter().any(|(known, _)| known.as_bytes() == name.as_bytes());
-    if has("\"attributes\"") || has("\"rings\"") || has("\"paths\"") || has("\"spatialReference\"")
-    {
-        return Some((
-            "JSON of ArcGIS (Esri)",
-            "query the service with f=geojson, or export GeoJSON",
-        ));
-    }
     let is_osm = has("\"elements\"") && (has("\"osm3s\"") || has("\"generator\""));
-    is_osm.then_some(("OpenStreetMap's JSON", "convert it to GeoJSON (osmtogeojson does)"))
+    let message = "this is OpenStreetMap's JSON; convert it to GeoJSON (osmtogeojson does)";
+    is_osm.then(|| message.to_owned())
 }
 
 fn unsupported(place: Place, what: &str, hint: &str) -> Error {

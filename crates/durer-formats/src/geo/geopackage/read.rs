@@ -160,9 +160,9 @@ fn chosen(contents: Contents, name: Option<&str>, warnings: &mut Warnings) -> Re
     let (layers, tables): (Vec<Layer>, Vec<Layer>) =
         layers.into_iter().partition(|layer| layer.geometry.is_some());
     if !tables.is_empty() {
-        let (count, names) = (tables.len(), names(&tables));
-        let message =
-            format!("{count} tables without geometries, {names}, are left out; --layer names one");
+        let names = names(&tables);
+        let words = "{table without geometries is left out|tables without geometries are left out}; --layer names one";
+        let message = format!("{}: {names}", crate::told::agreeing(tables.len() as u64, words));
         warnings.push(Place::Whole, message);
     }
     Ok(layers)

@@ -5,7 +5,6 @@
 mod dbf;
 mod encoding;
 mod record;
-mod rings;
 mod write;
 
 use super::beside::Beside;

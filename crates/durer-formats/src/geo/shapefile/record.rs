@@ -1,10 +1,10 @@
 //! The geometry of a record.
 
-use super::{Faults, rings};
+use super::Faults;
 use crate::geo::geojson::{finish_line, finish_ring};
+use crate::geo::rings;
 use crate::geo::{Dimensions, Geometry, Points, Warnings};
 use crate::{Error, Place, Result};
-use durer::clip::polygon::signed_area;
 use durer::math::DVec2;
 
 /// Limit below which a measure means "none".
@@ -190,11 +190,7 @@ fn areas(content: &Content, place: &Place, warnings: &mut Warnings) -> Vec<Vec<P
         finish_ring(ring, || place.clone(), warnings);
     }
     all.retain(|ring| !ring.is_empty());
-    // The largest ring is not a hole: if it runs in the other direction, all rings do, as some programs write them.
-    let areas = all.iter().map(|ring| signed_area(&ring.xy));
-    let largest = areas.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
-    let is_outer = |ring: &Points| (signed_area(&ring.xy) > 0.0) == (largest > 0.0);
-    rings::polygons(all, is_outer, place, warnings)
+    rings::directed(all, place, warnings)
 }
 
 /// Returns the polygons of triangles and rings.

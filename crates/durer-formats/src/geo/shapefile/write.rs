@@ -155,7 +155,7 @@ fn records(shapes: &[Shape], kind: Kind) -> Result<(Vec<u8>, Vec<u8>)> {
     for (number, shape) in (1_u32..).zip(shapes) {
         let content = content(shape, kind);
         let words = |length: usize| {
-            let what = "the length of a Shapefile in bytes";
+            let what = "length of a Shapefile in bytes";
             let (value, limit) = (length as u64, 2 * u64::from(u32::MAX >> 1));
             let error = || Error::Limit { place: Place::Whole, what, value, limit };
             i32::try_from(length / 2).map(i32::to_be_bytes).map_err(|_| error())
@@ -264,7 +264,7 @@ fn table(features: &[Feature], warnings: &mut Vec<Warning>) -> Result<Vec<u8>> {
     let head = 32 + 32 * columns.len() + 1;
     let too_many = || {
         let value = length.max(head) as u64;
-        let what = "the length of rows or of the head of a .dbf";
+        let what = "length of rows or of the head of a .dbf";
         Error::Limit { place: Place::Whole, what, value, limit: u64::from(u16::MAX) }
     };
     let [head, length] = [head, length].map(u16::try_from);

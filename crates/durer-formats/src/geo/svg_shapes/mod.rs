@@ -218,7 +218,12 @@ impl Walk {
             return Ok(());
         }
         let (place, value) = (self.place(text, at), self.used);
-        Err(Error::Limit { place, what: "the text that `use` shows", value, limit: MAX_USED })
+        Err(Error::Limit {
+            place,
+            what: "length of the text that `use` shows",
+            value,
+            limit: MAX_USED,
+        })
     }
 
     fn end_of_file(&mut self, text: &[u8], at: usize) -> Result<()> {

@@ -320,8 +320,8 @@ impl Topology<'_> {
             let known = number.fract() == 0.0 && number.abs() < 9e15;
             let index = if number < 0.0 { -number - 1.0 } else { number } as usize;
             let Some(arc) = self.arcs.get(index).filter(|_| known) else {
-                let count = self.arcs.len();
-                let message = format!("there are {count} arcs, and none of this number");
+                let there = crate::told::there_are(self.arcs.len() as u64);
+                let message = format!("there is no arc of this number: {there}");
                 return Err(place.clone().error(message));
             };
             self.count += arc.len() as u64;
@@ -330,7 +330,7 @@ impl Topology<'_> {
         })?;
         let limit = Limits::default().primitives;
         if self.count > limit {
-            let (what, value) = ("the positions of all features", self.count);
+            let (what, value) = ("number of positions of all features", self.count);
             return Err(Error::Limit { place: start.clone().place(), what, value, limit });
         }
         Ok(numbers)

@@ -25,6 +25,7 @@ impl Parser<'_> {
             self.out.colors.iter_mut().for_each(|c| *c *= scale);
         }
         self.out.repairs.sloppy = self.cursor.sloppy;
+        self.out.repairs.commas = self.cursor.commas;
         Ok(self.out)
     }
 

@@ -51,7 +51,7 @@ impl Options {
             return Ok(());
         }
         let (value, limit) = (found as u64, self.max_crossings as u64);
-        Err(Error::Limit { what: "crossings of segments", value, limit })
+        Err(Error::Limit { what: "number of crossings of segments", value, limit })
     }
 }
 

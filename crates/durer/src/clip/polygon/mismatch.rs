@@ -212,7 +212,7 @@ impl<'a> Layer<'a> {
             true
         });
         let (value, limit) = (edges.len() as u64, PAIRS_PER_EDGE as u64);
-        let limit = Error::Limit { what: "comparisons of edges", value, limit };
+        let limit = Error::Limit { what: "number of comparisons of edges", value, limit };
         if all { Ok(()) } else { Err(limit) }
     }
 

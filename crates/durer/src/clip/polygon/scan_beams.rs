@@ -206,7 +206,7 @@ pub fn scan_beams(
         }
         if parts.len() > options.max_trapezoids {
             let (value, limit) = (parts.len() as u64, options.max_trapezoids as u64);
-            return Err(Error::Limit { what: "trapezoids", value, limit });
+            return Err(Error::Limit { what: "number of trapezoids", value, limit });
         }
     }
     Ok(parts)

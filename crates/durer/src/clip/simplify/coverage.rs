@@ -129,7 +129,7 @@ impl Coverage {
         let count = self.points.len() as u64;
         let limit = u64::from(u32::MAX - 1);
         if count > limit {
-            return Err(Error::Limit { what: "points", value: count, limit });
+            return Err(Error::Limit { what: "number of points", value: count, limit });
         }
         let mut network = Network::new(&self.points, &self.chains);
         let mut links = std::mem::take(&mut network.links);

@@ -119,7 +119,11 @@ fn control(input: &Input) -> Result<&[DVec2]> {
     let line = line.ok_or_else(|| Error::parameter("input", "without a line", TAKES.en))?;
     if line.len() > MOST {
         let (value, limit) = (line.len() as u64, MOST as u64);
-        return Err(Error::Limit { what: "control points to be explained", value, limit });
+        return Err(Error::Limit {
+            what: "number of control points to be explained",
+            value,
+            limit,
+        });
     }
     Ok(line)
 }

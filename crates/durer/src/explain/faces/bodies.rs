@@ -88,5 +88,5 @@ pub(super) fn check_count(faces: &[Vec<DVec3>]) -> Result<()> {
         return Ok(());
     }
     let (value, limit) = (faces.len() as u64, MOST as u64);
-    Err(Error::Limit { what: "faces to be explained", value, limit })
+    Err(Error::Limit { what: "number of faces to be explained", value, limit })
 }

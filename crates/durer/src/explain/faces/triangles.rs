@@ -32,7 +32,7 @@ impl Triangles {
         let value = corners.len() as u64;
         if value > MOST {
             return Err(crate::Error::Limit {
-                what: "triangles to be explained",
+                what: "number of triangles to be explained",
                 value,
                 limit: MOST,
             });

@@ -214,7 +214,7 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
     let side = width.max(height);
     if side > MAX_SIDE {
         return Err(Error::TooLarge {
-            what: "pixels per side",
+            what: "number of pixels per side",
             value: u64::from(side),
             limit: u64::from(MAX_SIDE),
         });

@@ -74,9 +74,9 @@ impl Faces {
             let limit = u64::from(u32::MAX >> 1);
             if value > limit { Err(Error::Limit { what, value, limit }) } else { Ok(()) }
         };
-        limit("triangles", scene.triangle_count())?;
+        limit("number of triangles", scene.triangle_count())?;
         let vertices = |i: &Instance| scene.meshes[i.mesh].positions.len() as u64;
-        limit("vertices", scene.instances.iter().map(vertices).sum())?;
+        limit("number of vertices", scene.instances.iter().map(vertices).sum())?;
         let mut faces = Self { runs: face_runs(scene)?, ..Self::default() };
         faces.triangles.reserve_exact(scene.triangle_count() as usize);
         let mut welded: Vec<Option<Welded>> = scene.meshes.iter().map(|_| None).collect();

@@ -295,7 +295,7 @@ impl Sorter<'_> {
             return Ok(true);
         }
         let Some((polygon, along, plane)) = self.cut(p, q) else { return Ok(false) };
-        let limit = ("pieces of polygons", options.max_pieces);
+        let limit = ("number of pieces of polygons", options.max_pieces);
         let pieces = self.pieces.split(&plane, polygon, limit)?;
         t.step(|| Step::Split { polygon, face: self.pieces.face(polygon), along, pieces });
         // The pixels of both pieces are those of the polygon, which keeps its own.

@@ -338,7 +338,11 @@ pub fn render(
             pieces += 1;
             if pieces > options.max_pieces {
                 let limit = options.max_pieces;
-                return Err(Error::Limit { what: "pieces of patches", value: pieces, limit });
+                return Err(Error::Limit {
+                    what: "number of pieces of patches",
+                    value: pieces,
+                    limit,
+                });
             }
             if pieces.is_multiple_of(CHECKED) {
                 screen.work.check()?;
@@ -352,7 +356,7 @@ pub fn render(
             let is_last = depth >= options.max_depth;
             if centers > 1 && is_last {
                 let (value, limit) = (u64::from(depth) + 1, u64::from(options.max_depth));
-                return Err(Error::Limit { what: "divisions of a patch", value, limit });
+                return Err(Error::Limit { what: "number of divisions of a patch", value, limit });
             }
             if centers > 1 || !(is_last || piece.is_flat(options.flatness)) {
                 t.step(|| Step::Divide { patch, part, centers });

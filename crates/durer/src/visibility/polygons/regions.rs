@@ -195,7 +195,7 @@ pub fn regions(
         cuts += list.polygons.len();
         if cuts > options.max_cuts {
             let (value, limit) = (cuts as u64, options.max_cuts as u64);
-            return Err(Error::Limit { what: "cuts of polygons", value, limit });
+            return Err(Error::Limit { what: "number of cuts of polygons", value, limit });
         }
         let [inside, outside] = cutter.cut(nearest, list, t)?;
         lists.extend([charged(outside)?, charged(inside)?]);

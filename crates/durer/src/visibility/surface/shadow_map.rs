@@ -70,11 +70,11 @@ pub(crate) fn cast_within(
     options: &Options,
 ) -> Result<()> {
     if options.side == 0 {
-        return Err(Error::parameter("shadow map's side", 0, "at least 1 texel"));
+        return Err(Error::parameter("side of a shadow map", 0, "at least 1 texel"));
     }
     if options.side > MAX_SIDE {
         let (value, limit) = (u64::from(options.side), u64::from(MAX_SIDE));
-        return Err(Error::TooLarge { what: "shadow map's side", value, limit });
+        return Err(Error::TooLarge { what: "side of a shadow map", value, limit });
     }
     let Some(sphere) = scene.bounding_sphere() else { return Ok(()) };
     let directions: Vec<DVec3> = lights.directional.iter().map(|l| l.to_light.as_dvec3()).collect();

@@ -16,7 +16,7 @@ pub fn check<P: Vertex>(subject: &Shapes<P>, clip: &Shapes<P>) -> Result<[Option
     let count = subject.points().len() + clip.points().len();
     if count > MOST_POINTS {
         let (value, limit) = (count as u64, MOST_POINTS as u64);
-        return Err(Error::Limit { what: "points", value, limit });
+        return Err(Error::Limit { what: "number of points", value, limit });
     }
     Ok([corners(subject.points(), 0)?, corners(clip.points(), subject.points().len())?])
 }

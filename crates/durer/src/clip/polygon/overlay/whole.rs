@@ -27,7 +27,11 @@ impl GridMap<I64Vec2> for Whole {
         }
         let across = low.x.abs_diff(high.x).max(low.y.abs_diff(high.y));
         if across > WIDEST {
-            return Err(Error::Limit { what: "cells across", value: across, limit: WIDEST });
+            return Err(Error::Limit {
+                what: "number of cells across",
+                value: across,
+                limit: WIDEST,
+            });
         }
         // No overflow: half of the difference is added.
         let middle = |low: i64, high: i64| low + (high - low) / 2;

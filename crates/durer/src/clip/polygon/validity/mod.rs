@@ -201,7 +201,7 @@ pub fn flaws_traced(shapes: &Shapes, t: &mut impl Tracer<Step>) -> Result<Vec<Fl
     });
     if !all {
         let (value, limit) = (edges.len() as u64, PAIRS_PER_EDGE as u64);
-        return Err(Error::Limit { what: "comparisons of edges", value, limit });
+        return Err(Error::Limit { what: "number of comparisons of edges", value, limit });
     }
     let first = found.len();
     found.extend(touches.passages(&shapes));

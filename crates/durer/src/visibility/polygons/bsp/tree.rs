@@ -133,7 +133,7 @@ impl Tree {
                 Side::Back => halves[1].push(piece),
                 Side::On => self.nodes[node as usize].on.push(piece),
                 Side::Both => {
-                    let limit = ("pieces of a tree", options.max_pieces);
+                    let limit = ("number of pieces of a tree", options.max_pieces);
                     let into = self.pieces.split(&plane, piece, limit)?;
                     t.step(|| Step::Split { piece, into });
                     halves.iter_mut().zip(into).for_each(|(half, piece)| half.push(piece));

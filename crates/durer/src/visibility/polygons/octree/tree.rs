@@ -85,7 +85,11 @@ impl Octree {
             count = count + of(&cell) + children.iter().map(of).sum::<usize>() - held;
             if count > division.most {
                 let (value, limit) = (count as u64, division.most as u64);
-                return Err(Error::Limit { what: "faces in the cells of an octree", value, limit });
+                return Err(Error::Limit {
+                    what: "number of faces in the cells of an octree",
+                    value,
+                    limit,
+                });
             }
             let cells = octree.cells.len() * size_of::<Cell>() + count * size_of::<u32>();
             octree.charge.grow_to(of_boxes + cells as u64)?;

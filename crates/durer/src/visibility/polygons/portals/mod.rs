@@ -217,7 +217,7 @@ pub fn visits(
     let mut enter = |way: &mut Vec<Open>, cell: usize, window: Window, t: &mut _| {
         if visits.len() >= options.max_visits {
             let (value, limit) = (visits.len() as u64 + 1, options.max_visits as u64);
-            return Err(Error::Limit { what: "visits of cells", value, limit });
+            return Err(Error::Limit { what: "number of visits of cells", value, limit });
         }
         charge.grow(size_of::<(Visit, Open)>() as u64)?;
         let visit = Visit { cell, window, portals: way.len() };

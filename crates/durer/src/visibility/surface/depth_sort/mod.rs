@@ -263,7 +263,7 @@ fn order_within(
         charge.grow_to(sorter.pieces.bytes())?;
         let value = sorter.looks / LOOKS_PER_COMPARISON;
         if value > most {
-            let what = "comparisons of polygons by depth sort";
+            let what = "number of comparisons of polygons by depth sort";
             return Err(Error::Limit { what, value, limit: most });
         }
     }

@@ -55,7 +55,7 @@ pub fn runs(scene: &Scene) -> crate::Result<Vec<Run>> {
                 next_item += range.len() as u64;
                 if next_item >= u64::from(u32::MAX) {
                     let (value, limit) = (next_item, u64::from(u32::MAX) - 1);
-                    return Err(crate::Error::Limit { what: "items", value, limit });
+                    return Err(crate::Error::Limit { what: "number of items", value, limit });
                 }
                 runs.push(Run {
                     instance: index,

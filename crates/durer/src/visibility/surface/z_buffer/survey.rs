@@ -115,7 +115,7 @@ impl Survey {
         let own: u64 = runs.iter().map(|run| run.range.len() as u64).sum();
         let value = u64::from(self.count) + own;
         if value > MOST_ITEMS {
-            return Err(Error::Limit { what: "items", value, limit: MOST_ITEMS });
+            return Err(Error::Limit { what: "number of items", value, limit: MOST_ITEMS });
         }
         runs.iter_mut().for_each(|run| run.first_item += self.count);
         self.count = value as u32;

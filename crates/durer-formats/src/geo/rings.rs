@@ -1,4 +1,4 @@
-//! The assignment of holes to rings.
+//! The assignment of holes to rings, by the directions in which these run.
 
 use crate::Place;
 use crate::geo::{Points, Warnings};
@@ -13,8 +13,17 @@ struct Outer {
     polygon: usize,
 }
 
+/// Returns the polygons of rings, of which outer ones run clockwise, or all the other way round as some programs write them:
+/// the largest ring is not a hole.
+pub fn directed(all: Vec<Points>, place: &Place, warnings: &mut Warnings) -> Vec<Vec<Points>> {
+    let areas = all.iter().map(|ring| signed_area(&ring.xy));
+    let largest = areas.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+    let is_outer = |ring: &Points| (signed_area(&ring.xy) > 0.0) == (largest > 0.0);
+    polygons(all, is_outer, place, warnings)
+}
+
 /// Puts each hole into the smallest outer ring around it; a hole outside all rings becomes a polygon, with a warning.
-pub fn polygons(
+fn polygons(
     rings: Vec<Points>,
     is_outer: impl Fn(&Points) -> bool,
     place: &Place,
@@ -44,10 +53,8 @@ pub fn polygons(
         }
     }
     if !alone.is_empty() {
-        let count = alone.len();
-        let message =
-            format!("{count} rings are oriented as holes but are in no ring; they become polygons");
-        warnings.push(place.clone(), message);
+        let words = "{ring is|rings are} oriented as {a hole but is|holes but are} in no ring; {it becomes a polygon|they become polygons}";
+        warnings.push(place.clone(), crate::told::agreeing(alone.len() as u64, words));
     }
     polygons.append(&mut alone);
     polygons
