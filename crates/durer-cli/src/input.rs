@@ -127,11 +127,12 @@ fn read_whole(
 ) -> Result<Model, Failure> {
     let bytes = bytes_within(path, &options.limits)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_model(&bytes, &name, resources, options).map_err(|e| refused(path, &e, &options.limits))
+    read_model(&bytes, &name, resources, options)
+        .map_err(|e| refused(&display_name(path), &e, &options.limits))
 }
 
 /// Returns the failure for an error of a reader, with the option that raises the limit if there is one.
-fn refused(path: &Path, error: &durer_formats::Error, limits: &Limits) -> Failure {
+fn refused(name: &str, error: &durer_formats::Error, limits: &Limits) -> Failure {
     let option = match error {
         durer_formats::Error::Limit { limit, .. } if *limit == limits.primitives => {
             "; --max-triangles raises it"
@@ -141,7 +142,7 @@ fn refused(path: &Path, error: &durer_formats::Error, limits: &Limits) -> Failur
         }
         _ => "",
     };
-    Failure::Data(format!("{}: {error}{option}", display_name(path)))
+    Failure::Data(format!("{name}: {error}{option}"))
 }
 
 /// Returns access to the files beside an input, if the input is a file.
@@ -186,7 +187,7 @@ fn streamed(
     } else {
         return None;
     };
-    Some(model.map_err(|e| refused(path, &e, &options.limits)))
+    Some(model.map_err(|e| refused(&display_name(path), &e, &options.limits)))
 }
 
 /// Returns all bytes of a file, or of standard input, refused above the limit.

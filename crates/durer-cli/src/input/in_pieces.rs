@@ -1,6 +1,6 @@
 //! Models that are read in pieces, because they would not fit the budget.
 
-use super::{Reading, display_name, is_stream, tell_ignored};
+use super::{Reading, display_name, is_stream, refused, tell_ignored};
 use crate::failure::Failure;
 use crate::watch;
 use durer_formats::{Facts, Pieces, ReadOptions, ply, stl};
@@ -33,7 +33,7 @@ pub struct InPieces {
 impl InPieces {
     /// Returns a failure of the file.
     pub fn failure(&self, e: &durer_formats::Error) -> Failure {
-        Failure::Data(format!("{}: {e}", self.name))
+        refused(&self.name, e, &self.options.limits)
     }
 
     /// Returns the facts about the model as a whole.

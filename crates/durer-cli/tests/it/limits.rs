@@ -67,7 +67,7 @@ fn counts_of_thousands_of_millions_are_refused() {
     assert!(read.err.contains("1 of 1000000000 rows of element `vertex` is read"), "{}", read.err);
     folder.write("count.wkb", [1, 2, 0, 0, 0, 255, 255, 255, 255]);
     let clip = "clip count.wkb --window 0,0,1,1 -o a.geojson";
-    folder.run(clip).fails(1, "byte 5: a count of 4294967295");
+    folder.run(clip).fails(1, "byte 5, feature 1: a count of 4294967295");
     // The existing data are read: the count in the header of an STL file is often wrong.
     folder.write("count.stl", [&[b'x'; 80][..], &[255; 4], &[0; 50]].concat());
     assert!(folder.must("render count.stl -o a.png").err.contains("the file has room for 1"));
@@ -133,7 +133,9 @@ fn pictures_that_are_more_than_they_hold_are_refused() {
         ),
     ]);
     folder.write("textured.gltf", textured);
-    folder.run("render textured.gltf -o a.png").fails(1, "side of an image of 60000");
+    folder
+        .run("render textured.gltf -o a.png")
+        .fails(1, "the side of an image is 60000, above the limit");
     // Slightly more than a megabyte of zeros for a picture of one pixel: the excess is not read.
     folder.write("bomb.png", png(1, 1, 1 << 28));
     folder.must("fill bomb.png --at 0,0 --color red -o b.png");

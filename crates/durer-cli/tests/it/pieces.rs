@@ -247,7 +247,10 @@ fn what_is_not_seen_or_not_there_is_told_of_pieces_too() {
     folder.write("cut.ply", file);
     compare(&folder, "cut.ply", "--size 32x32");
     let few = "render a.stl -o b.png --size 32x32 --max-triangles 9000";
-    folder.run(&format!("{few} {BUDGET}")).fails(1, "number of triangles of 13500 is above");
+    folder.run(&format!("{few} {BUDGET}")).fails(
+        1,
+        "the number of triangles is 13500, above the limit of 9000; --max-triangles raises it",
+    );
 }
 
 #[test]

@@ -7,9 +7,9 @@ use durer_formats::geo::{GeoFormat, Reader, Writer, read_all};
 fn malformed_geojson_is_refused_or_repaired_and_told() {
     let Some(data) = data() else { return };
     for (name, expected) in [
-        ("geo_nan", "error: line 1, column 42, feature 1: a number is expected"),
-        ("geo_nest_50k", "error: line 1, column 161, feature 1: this is nested too deep"),
-        ("geo_wrong_nesting", "error: line 1, column 41, feature 1: a position"),
+        ("geo_nan", "error: line 1, column 42: a number is expected"),
+        ("geo_nest_50k", "error: line 1, column 161: this is nested too deep"),
+        ("geo_wrong_nesting", "error: line 1, column 41: a position"),
         (
             "geo_two_point_ring",
             "warning: line 1, column 37, feature 1: a ring needs four positions",

@@ -422,7 +422,7 @@ fn uses_of_svg_that_cannot_be_followed_are_told() {
         .collect();
     let text = format!("<svg><defs><path id='g0' d=''/>{doubled}</defs><use href='#g40'/></svg>");
     let told = error(GeoFormat::Svg, text.as_bytes());
-    assert!(told.contains("the text that `use` shows of 671"), "{told}");
+    assert!(told.contains("the length of the text that `use` shows is 671"), "{told}");
 }
 
 #[test]

@@ -289,7 +289,7 @@ fn feature_sets_of_arcgis_are_read() {
     }
     let points = r#"{"attributes":{"name":"Bern"},"geometry":{"x":1,"y":true}}"#;
     let told = error(set(head, points).as_bytes(), "a.json");
-    assert!(told.contains("feature 1 (name Bern): a number is expected"), "{told}");
+    assert!(told.contains("feature 1 (name Bern): a finite number is expected"), "{told}");
     let curve = r#"{"geometry":{"curveRings":[]}}"#;
     assert!(error(set(head, curve).as_bytes(), "a.json").contains("returnTrueCurves=false"));
     let cut = set(head, "").replace("}", "").replace("]", "],\"exceededTransferLimit\":true}");

@@ -357,7 +357,7 @@ fn broken_primitives_tell_their_path() {
     // Without a view no data limit the count, so only the limit can refuse it.
     let zeros = r#"{"componentType": 5126, "count": 1000000000, "type": "VEC3"}"#;
     let message = primitive(zeros, r#"{"attributes": {"POSITION": 1}}"#);
-    assert!(message.contains("decoded size of 12000000"), "{message}");
+    assert!(message.contains("decoded size is 12000000"), "{message}");
     let early = r#"{"bufferView": 0, "byteOffset": 18446744073709551615, "componentType": 5126, "count": 3, "type": "VEC3"}"#;
     assert!(primitive(early, r#"{"attributes": {"POSITION": 0}}"#).starts_with("accessors[1]: "));
 }

@@ -29,7 +29,7 @@ const SETS: [&[u8]; 4] =
 /// Name of the member for the coordinate system.
 pub const SYSTEM: &[u8] = b"\"spatialReference\"";
 
-/// What a feature set states for all its geometries.
+/// Statements of a feature set about all its geometries.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Given {
     has_z: Option<bool>,
@@ -206,8 +206,15 @@ fn measured(mut points: Points, given: Given) -> Points {
 fn number(members: &[RawMember<'_>], name: &[u8]) -> Result<Option<f64>> {
     match find(members, name) {
         Some(text) if !text.is_null() && text.as_bytes() != b"\"NaN\"" => {
-            let mut cursor: Cursor<'_> = text.cursor();
-            cursor.number().map(Some)
+            let number = crate::number::float(text.as_bytes());
+            let number = number
+                .filter(|(value, length)| value.is_finite() && *length == text.as_bytes().len());
+            let wrong = || {
+                let mut cursor: Cursor<'_> = text.cursor();
+                let found = cursor.found();
+                cursor.error(format!("a finite number is expected, not {found}"))
+            };
+            number.map(|(value, _)| Some(value)).ok_or_else(wrong)
         }
         _ => Ok(None),
     }

@@ -31,7 +31,7 @@ pub struct Reader<R> {
     /// Features on lines of their own, since another document came.
     in_lines: u64,
     systems: Systems,
-    /// What an Esri feature set states for all its geometries; `None` for other documents.
+    /// Statements of an Esri feature set about all its geometries; `None` for other documents.
     esri: Option<esri::Given>,
     /// True if the text of the feature read last has been cut out of the stream.
     is_cut: bool,
