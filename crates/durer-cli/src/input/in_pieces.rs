@@ -61,13 +61,12 @@ pub fn in_pieces(path: &Path, reading: &Reading) -> Option<Result<InPieces, Fail
     options.limits.primitives = most_triangles.unwrap_or(u64::MAX);
     watch::of_file(display_name(path));
     let name = display_name(path);
-    let failure = |e| Failure::Data(format!("{name}: {e}"));
     let pieces = match opened(File::open(path).ok()?, length, at_once, &options) {
         Ok(pieces) => pieces
             .filter(|pieces| pieces.whole() > left.min(FEW.max(length.saturating_mul(BY_FILE))))?,
-        Err(e) => return Some(Err(failure(e))),
+        Err(e) => return Some(Err(refused(&name, &e, &options.limits))),
     };
-    Some(Ok(InPieces { pieces, name: name.clone(), options }))
+    Some(Ok(InPieces { pieces, name, options }))
 }
 
 /// Returns the pieces of a file of this many bytes; `None` if its format has none.

@@ -270,7 +270,7 @@ fn feature_sets_of_arcgis_are_read() {
         (r#"{"x":1,"y":2.5}"#, "POINT (1 2.5)"),
         (r#"{"x":1,"y":2,"z":3,"m":4}"#, "POINT ZM (1 2 3 4)"),
         (r#"{"x":"NaN","y":"NaN"}"#, "POINT EMPTY"),
-        (r#"{"points":[[1,2],[3,4]]}"#, "MULTIPOINT ((1 2), (3 4))"),
+        (r#"{"points":[[1,2],[3,4]]}"#, "MULTIPOINT (1 2, 3 4)"),
         (r#"{"paths":[[[1,2],[3,4]]]}"#, "LINESTRING (1 2, 3 4)"),
         (r#"{"hasM":true,"paths":[[[1,2,9],[3,4,8]]]}"#, "LINESTRING M (1 2 9, 3 4 8)"),
         (
