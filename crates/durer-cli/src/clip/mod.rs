@@ -60,6 +60,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         reader.skip_failures();
     }
     let to = output_format(args, from)?;
+    let converts = converts(args, from, to) || reader.is_arcgis();
     let shift = Shift::new(&args.systems);
     let fields = Fields::new(&args.fields);
     let mut report = Report {
@@ -82,7 +83,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
             (None, Some(zoom), _) => ended = job.tile(zoom),
             (None, None, mask) if joins(args) => job.join(mask.as_ref())?,
             (None, None, Some(mask)) => job.cut(mask)?,
-            (None, None, None) if converts(args, from, to) => job.convert()?,
+            (None, None, None) if converts => job.convert()?,
             (None, None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
         }
         let shifted = job.shift.as_ref().and_then(Shift::told);

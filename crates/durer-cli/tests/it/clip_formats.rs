@@ -334,3 +334,18 @@ fn metres_as_degrees_are_told() {
     let ended = folder.must("clip far.csv --from-crs EPSG:25832 --where x=1 -o o.geojson");
     assert!(!ended.err.contains("beyond 90 degrees"), "{}", ended.err);
 }
+
+#[test]
+fn json_of_arcgis_becomes_geojson() {
+    let folder = Folder::new();
+    folder.write(
+        "a.json",
+        r#"{"geometryType":"esriGeometryPoint","spatialReference":{"wkid":4326},"features":[{"attributes":{"n":1},"geometry":{"x":8.5,"y":47}}]}"#,
+    );
+    folder.must("clip a.json -o a.geojson");
+    let made: serde_json::Value = serde_json::from_slice(&folder.read("a.geojson")).expect("JSON");
+    let feature = &made["features"][0];
+    assert_eq!(feature["geometry"]["coordinates"], serde_json::json!([8.5, 47]));
+    assert_eq!(feature["properties"]["n"], 1);
+    folder.run("clip a.geojson -o b.geojson").fails(2, "nothing to clip with");
+}

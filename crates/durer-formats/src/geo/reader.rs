@@ -201,6 +201,15 @@ impl<R: Read> Reader<R> {
         Ok(feature)
     }
 
+    /// Returns whether the file is JSON of ArcGIS, which is read as if it were GeoJSON; to be called before the first
+    /// feature.
+    pub fn is_arcgis(&mut self) -> bool {
+        match &mut self.source {
+            Source::GeoJson(reader) => reader.is_arcgis(),
+            _ => false,
+        }
+    }
+
     /// Leaves out features that cannot be read, from now on, where a format shows the end of such a feature: GeoJSON
     /// (whose text is JSON), CSV, WKT (with a geometry per line), hexadecimal WKB and Shapefile. A warning at the end
     /// counts them.

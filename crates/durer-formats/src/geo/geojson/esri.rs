@@ -67,6 +67,13 @@ fn is_geometry(members: &[RawMember<'_>]) -> bool {
     SHAPES.iter().any(|name| find(members, name).is_some())
 }
 
+/// Returns whether a text that is JSON begins as one of ArcGIS, by names that GeoJSON does not have.
+pub fn begins(text: &[u8]) -> bool {
+    let has = |name: &[u8]| text.windows(name.len()).any(|part| part == name);
+    let own = [&b"\"attributes\""[..], b"\"rings\"", b"\"paths\"", b"\"geometryType\"", SYSTEM];
+    own.into_iter().any(has) && !has(b"\"coordinates\"")
+}
+
 /// Returns whether the name of a member is one of a feature set.
 pub fn is_of_set(name: &[u8]) -> bool {
     SETS.contains(&name)

@@ -113,6 +113,11 @@ impl<R: Read> Reader<R> {
         told.or_else(|| self.systems.common.clone()).unwrap_or(System::LONLAT)
     }
 
+    /// Returns whether the text is JSON of ArcGIS, before the first feature has been read.
+    pub fn is_arcgis(&mut self) -> bool {
+        esri::begins(self.stream.ahead())
+    }
+
     pub fn warnings(&mut self) -> &mut Warnings {
         &mut self.geometries.warnings
     }

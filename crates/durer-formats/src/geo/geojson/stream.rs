@@ -47,6 +47,13 @@ impl<R: Read> Stream<R> {
         Ok(self.chunk.get(self.at).copied())
     }
 
+    /// Returns the bytes that are in memory, without stepping over them; those of the beginning if nothing was read.
+    pub fn ahead(&mut self) -> &[u8] {
+        // An error comes again when the bytes are read.
+        let _ = self.peek();
+        self.chunk.get(self.at..).unwrap_or_default()
+    }
+
     /// Reads the bytes that are available, so that a slow source is read as they arrive.
     fn refill(&mut self) -> Result<()> {
         self.at = 0;
