@@ -168,8 +168,8 @@ fn line(bytes: &[u8]) -> Result<()> {
         let value = text(u.bytes(length)?, VALUES)?;
         words.push(format!("{option}={}", String::from_utf8_lossy(&value)));
     }
-    let told = fuzzing::command_line(&words);
-    assert!(told.is_none_or(|told| !told.trim().is_empty()), "{words:?}");
+    let reported = fuzzing::command_line(&words);
+    assert!(reported.is_none_or(|reported| !reported.trim().is_empty()), "{words:?}");
     Ok(())
 }
 
@@ -177,7 +177,7 @@ fn line(bytes: &[u8]) -> Result<()> {
 pub fn annotations(bytes: &[u8]) {
     let made = text(bytes, ANNOTATIONS).unwrap_or_default();
     for text in [bytes, &made] {
-        let told = fuzzing::annotations(&String::from_utf8_lossy(text));
-        assert!(told.is_none_or(|told| !told.trim().is_empty()));
+        let reported = fuzzing::annotations(&String::from_utf8_lossy(text));
+        assert!(reported.is_none_or(|reported| !reported.trim().is_empty()));
     }
 }

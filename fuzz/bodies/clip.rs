@@ -109,7 +109,7 @@ fn any_polygons(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The overlay's result is valid by `check` (its cell is told), the sweep's is the same, and the areas
+/// The overlay's result is valid by `check` (its cell is reported), the sweep's is the same, and the areas
 /// of the four operations fit together within what snapping may change.
 pub fn overlay_laws(bytes: &[u8], check: impl Fn(&Shapes, f64) -> std::result::Result<(), String>) {
     let mut u = Unstructured::new(bytes);

@@ -52,7 +52,7 @@ fn among<T: Copy + Send + Sync + 'static>(
 
 /// Facts of an algorithm, as JSON.
 #[derive(Debug, Serialize)]
-struct Told {
+struct Facts {
     name: &'static str,
     title: &'static str,
     authors: &'static str,
@@ -67,7 +67,7 @@ struct Told {
     pseudocode: &'static [&'static str],
 }
 
-impl From<&Info> for Told {
+impl From<&Info> for Facts {
     fn from(info: &Info) -> Self {
         Self {
             name: info.name,
@@ -87,8 +87,8 @@ impl From<&Info> for Told {
 
 /// Prints the algorithms that were requested.
 pub fn run(args: &AlgorithmsArgs) -> Result<(), Failure> {
-    let found: Vec<Told> =
-        ALGORITHMS.iter().filter(|i| is_wanted(args, i)).map(|i| Told::from(*i)).collect();
+    let found: Vec<Facts> =
+        ALGORITHMS.iter().filter(|i| is_wanted(args, i)).map(|i| Facts::from(*i)).collect();
     if args.json { report::print(&found) } else { report::print_text(&table(&found)) }
 }
 
@@ -101,18 +101,18 @@ fn is_wanted(args: &AlgorithmsArgs, info: &Info) -> bool {
 }
 
 /// Returns a line for each algorithm, in columns, after one of headings.
-fn table(found: &[Told]) -> String {
+fn table(found: &[Facts]) -> String {
     if found.is_empty() {
         return "nothing\n".to_owned();
     }
     let heading = ["name", "space", "occluder", "coherence", "year", "title"].map(str::to_owned);
     let mut rows = vec![heading];
-    rows.extend(found.iter().map(|told| {
+    rows.extend(found.iter().map(|facts| {
         let coherence =
-            if told.coherence.is_empty() { "-".into() } else { told.coherence.join(",") };
-        let texts = [told.name, told.space, told.occluder].map(str::to_owned);
+            if facts.coherence.is_empty() { "-".into() } else { facts.coherence.join(",") };
+        let texts = [facts.name, facts.space, facts.occluder].map(str::to_owned);
         let [name, space, occluder] = texts;
-        [name, space, occluder, coherence, told.year.to_string(), told.title.to_owned()]
+        [name, space, occluder, coherence, facts.year.to_string(), facts.title.to_owned()]
     }));
     let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
     let widths: [usize; 5] = std::array::from_fn(width);

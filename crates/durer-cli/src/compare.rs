@@ -13,7 +13,7 @@ use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::wireframe;
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 
 /// Free pixels around the pictures of a sheet.
 const GAP: u32 = 8;

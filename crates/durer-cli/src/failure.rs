@@ -1,6 +1,6 @@
 //! The kinds of failure of the command.
 
-use durer_formats::told::{message, shown_path};
+use durer_formats::wording::{message, shown_path};
 use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
@@ -80,7 +80,7 @@ impl fmt::Display for Failure {
 }
 
 /// Makes writes beyond the largest size of a file (`ulimit -f`) fail like others, instead of ending the process.
-pub fn tell_of_large_files() {
+pub fn report_large_files() {
     #[cfg(unix)]
     {
         let noted = std::sync::Arc::default();

@@ -16,7 +16,7 @@ use durer::trace::NoTrace;
 use durer_formats::image::Orientation;
 use durer_formats::picture::PictureFormat;
 use durer_formats::png::Channels;
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
 use std::path::PathBuf;

@@ -6,7 +6,7 @@ use crate::messages::Messages;
 pub type Rule = (&'static str, &'static [&'static str]);
 
 /// Warns of given options that have no effect by one of the rules.
-pub fn tell(given: &[String], rules: impl IntoIterator<Item = Rule>, messages: &Messages) {
+pub fn warn(given: &[String], rules: impl IntoIterator<Item = Rule>, messages: &Messages) {
     for (reason, idle) in rules {
         for id in given.iter().filter(|id| idle.contains(&&***id)) {
             let option = id.replace('_', "-");

@@ -13,7 +13,7 @@ use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces, SceneOrientation};
 use durer::work::Work;
-use durer_formats::told::{counted, cut, escaped};
+use durer_formats::wording::{counted, cut, escaped};
 use durer_formats::{Facts, Model, ModelFormat, Place, archive, is_name_of_model, xyz};
 use serde::Serialize;
 use std::fmt::Write;
@@ -46,12 +46,12 @@ pub struct InfoArgs {
 /// Report on a file's contents.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-enum Told {
+enum Contents {
     Model(Box<Info>),
     Layer(Box<LayerInfo>),
 }
 
-impl Told {
+impl Contents {
     fn text(&self) -> String {
         match self {
             Self::Model(info) => info.text(),
@@ -125,14 +125,14 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     let messages = Messages::new(&args.running, args.models.len() as u64);
     let mut infos = Vec::new();
-    let ended = tell_all(args, &messages, &mut infos);
+    let ended = describe_all(args, &messages, &mut infos);
     drop(messages);
     if ended.is_err() && infos.is_empty() {
         return ended;
     }
     let printed = match &infos[..] {
         _ if !args.json => {
-            let texts: Vec<String> = infos.iter().map(Told::text).collect();
+            let texts: Vec<String> = infos.iter().map(Contents::text).collect();
             report::print_text(&texts.join("\n"))
         }
         [one] if ended.is_ok() => report::print(one),
@@ -142,7 +142,11 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 /// Reads the files one after the other, up to the first that cannot be read.
-fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Result<(), Failure> {
+fn describe_all(
+    args: &InfoArgs,
+    messages: &Messages,
+    infos: &mut Vec<Contents>,
+) -> Result<(), Failure> {
     for path in &args.models {
         let name = input::display_name(path);
         messages.progress.stage(|| format!("reading {name}"));
@@ -153,7 +157,7 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
                 if chosen.is_some() || files.len() < 2 { vec![chosen] } else { names.collect() };
             for chosen in each {
                 let layers = layer::of_layers(path, chosen, &args.running.work)?;
-                infos.extend(layers.into_iter().map(|layer| Told::Layer(Box::new(layer))));
+                infos.extend(layers.into_iter().map(|layer| Contents::Layer(Box::new(layer))));
             }
         } else if args.layer.is_some() {
             let message = format!("--layer: {name} holds a model, which has no layers");
@@ -166,7 +170,7 @@ fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Resu
                 Some(pieces) => of_pieces(name, &mut pieces?)?,
                 None => of_model(name, &input::read(path, &options)?, &args.running.work)?,
             };
-            infos.push(Told::Model(Box::new(info)));
+            infos.push(Contents::Model(Box::new(info)));
         }
         messages.progress.advance();
     }
@@ -230,7 +234,7 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
         points: count(durer::scene::Topology::Points),
         meshes: scene.meshes.len(),
         instances: scene.instances.len(),
-        bounds: scene.bounds().map(told_bounds),
+        bounds: scene.bounds().map(reported_bounds),
         area: area(scene),
         closed,
         inside_out: orientation.as_ref().map(|o| o.inside_out),
@@ -275,7 +279,7 @@ fn of_pieces(name: String, read: &mut InPieces) -> Result<Info, Failure> {
         points,
         meshes: 1,
         instances: 1,
-        bounds: bounds.map(told_bounds),
+        bounds: bounds.map(reported_bounds),
         area: (triangles > 0).then_some(area),
         closed: None,
         inside_out: None,
@@ -309,7 +313,7 @@ fn short(name: impl AsRef<str>) -> String {
     cut(name.as_ref()).into_owned()
 }
 
-fn told_bounds(b: Aabb) -> Bounds {
+fn reported_bounds(b: Aabb) -> Bounds {
     Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() }
 }
 

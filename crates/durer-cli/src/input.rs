@@ -10,7 +10,7 @@ use crate::places::is_stream;
 use crate::resources::Folder;
 use crate::watch;
 use durer::work::Work;
-use durer_formats::told::shown_path;
+use durer_formats::wording::shown_path;
 use durer_formats::{
     Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, gltf, read_model, stl,
 };
@@ -89,12 +89,12 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
     let resources = resources(path, root.as_deref())?;
     let streamed = streamed(path, &*resources, options);
     let mut model = streamed.unwrap_or_else(|| read_whole(path, &*resources, options))?;
-    tell_ignored(&mut model, options);
+    warn_of_ignored(&mut model, options);
     Ok(model)
 }
 
 /// Warns of options that have no effect for a model of its format.
-fn tell_ignored(model: &mut Model, options: &ReadOptions) {
+fn warn_of_ignored(model: &mut Model, options: &ReadOptions) {
     // For formats that have lights, the reader warns itself.
     if !model.format.starts_with("glTF") {
         for (given, what) in [

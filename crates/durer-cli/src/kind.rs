@@ -119,46 +119,46 @@ pub struct Wanted {
     /// The kind.
     pub kind: Kind,
     /// True if the kind is from an option, not from the name.
-    told: bool,
+    is_given: bool,
     /// Suffixes of its files' names.
     suffixes: &'static str,
 }
 
 impl Wanted {
     /// Creates an output of a command that writes pictures and drawings.
-    pub fn any(path: &Path, told: Option<Kind>) -> Self {
-        let kind = told.or_else(|| Kind::of_path(path)).unwrap_or(Kind::PNG);
-        Self { kind, told: told.is_some(), suffixes: ANY }
+    pub fn any(path: &Path, given: Option<Kind>) -> Self {
+        let kind = given.or_else(|| Kind::of_path(path)).unwrap_or(Kind::PNG);
+        Self { kind, is_given: given.is_some(), suffixes: ANY }
     }
 
     /// Creates an output of a command that writes pictures only.
-    pub fn picture(path: &Path, told: Option<PictureFormat>) -> Self {
+    pub fn picture(path: &Path, given: Option<PictureFormat>) -> Self {
         let of_name = || match Kind::of_path(path) {
             Some(Kind::Picture(format)) => Some(format),
             _ => None,
         };
-        let kind = told.or_else(of_name).map_or(Kind::PNG, Kind::Picture);
-        Self { kind, told: told.is_some(), suffixes: PICTURES }
+        let kind = given.or_else(of_name).map_or(Kind::PNG, Kind::Picture);
+        Self { kind, is_given: given.is_some(), suffixes: PICTURES }
     }
 
     /// Creates an output of a command that writes pictures and, as vectors, SVG, PDF and DXF.
-    pub fn map(path: &Path, told: Option<Kind>) -> Self {
+    pub fn map(path: &Path, given: Option<Kind>) -> Self {
         let of_name = || Kind::of_path(path).filter(|kind| kind.is_of_maps());
-        let kind = told.or_else(of_name).unwrap_or(Kind::PNG);
-        Self { kind, told: told.is_some(), suffixes: MAPS }
+        let kind = given.or_else(of_name).unwrap_or(Kind::PNG);
+        Self { kind, is_given: given.is_some(), suffixes: MAPS }
     }
 
     /// Creates a picture whose pixels are numbers that must not change.
     pub fn plane() -> Self {
-        Self { kind: Kind::PNG, told: false, suffixes: PLANES }
+        Self { kind: Kind::PNG, is_given: false, suffixes: PLANES }
     }
 
     /// Refuses a name with the suffix of another kind.
     pub fn check_name(&self, option: &str, path: &Path) -> Result<(), Failure> {
         let what = match Kind::of_path(path) {
             Some(kind) if kind == self.kind => return Ok(()),
-            None if self.told => return Ok(()),
-            Some(_) if self.told => format!(
+            None if self.is_given => return Ok(()),
+            Some(_) if self.is_given => format!(
                 "--format says {}, but the name has another suffix; end it in .{}",
                 self.kind.name(),
                 self.kind.suffix()
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn names_and_options_say_what_is_wanted() {
         let jpeg = Kind::Picture(PictureFormat::Jpeg);
-        let any = |path: &str, told| Wanted::any(Path::new(path), told).kind;
+        let any = |path: &str, given| Wanted::any(Path::new(path), given).kind;
         assert_eq!(any("a.JPEG", None), jpeg);
         assert_eq!(any("a.svg", None), Kind::Drawing(DrawingFormat::Svg));
         assert_eq!(any("folder", None), Kind::PNG);
@@ -199,12 +199,12 @@ mod tests {
 
     #[test]
     fn names_must_fit_what_is_written() {
-        let check = |path: &str, told: Option<&str>| {
-            let told = told.map(Kind::of_name);
-            let checked = Wanted::any(Path::new(path), told).check_name("-o", Path::new(path));
+        let check = |path: &str, given: Option<&str>| {
+            let given = given.map(Kind::of_name);
+            let checked = Wanted::any(Path::new(path), given).check_name("-o", Path::new(path));
             checked.map_err(|e| e.to_string())
         };
-        for (path, told) in [
+        for (path, given) in [
             ("a.png", None),
             ("a.jpg", Some("jpeg")),
             ("a.plt", Some("hpgl")),
@@ -213,9 +213,9 @@ mod tests {
             ("tmp.Xa41", Some("png")),
             ("tmp", Some("webp")),
         ] {
-            assert_eq!(check(path, told), Ok(()), "{path}");
+            assert_eq!(check(path, given), Ok(()), "{path}");
         }
-        for (path, told, part) in [
+        for (path, given, part) in [
             ("a.bmp", None, "pictures are written as PNG"),
             ("a", None, ".png"),
             (
@@ -225,7 +225,7 @@ mod tests {
             ),
             ("a.svg", Some("png"), "end it in .png"),
         ] {
-            assert!(check(path, told).unwrap_err().contains(part), "{path}");
+            assert!(check(path, given).unwrap_err().contains(part), "{path}");
         }
     }
 }

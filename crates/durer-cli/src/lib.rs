@@ -65,7 +65,7 @@ use clap::error::{ContextKind, ContextValue};
 use config::Configured;
 use durer_formats::ModelFormat;
 use durer_formats::geo::GeoFormat;
-use durer_formats::told::shown_path;
+use durer_formats::wording::shown_path;
 use failure::Failure;
 use options::RunningArgs;
 use std::ffi::OsString;
@@ -80,8 +80,8 @@ pub fn main() -> ExitCode {
 
 /// Runs the command with its name and arguments, and returns its exit code; once in a process.
 pub fn main_with(line: Vec<OsString>) -> ExitCode {
-    failure::tell_of_large_files();
-    let result = panics::told_at_the_end(|| parse_and_run(line));
+    failure::report_large_files();
+    let result = panics::reported_at_the_end(|| parse_and_run(line));
     if let Some(code) = watch::interrupted() {
         return ExitCode::from(code);
     }

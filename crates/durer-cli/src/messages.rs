@@ -3,7 +3,7 @@
 use crate::options::RunningArgs;
 use crate::progress::Progress;
 use durer_formats::Warning;
-use durer_formats::told;
+use durer_formats::wording;
 use std::sync::{Mutex, PoisonError};
 
 /// Warnings of one model that are printed without `--verbose`; the others are counted.
@@ -35,7 +35,7 @@ impl Messages {
 
     /// Prints an error, even with `--quiet`.
     pub fn error(&self, message: impl std::fmt::Display) {
-        self.progress.tell(&told::message(&format!("durer: {message}")));
+        self.progress.print(&wording::message(&format!("durer: {message}")));
     }
 
     /// Prints a warning about a file that does not come from its reader.
@@ -48,17 +48,17 @@ impl Messages {
     /// Prints a choice that the command made about a file.
     pub fn note(&self, file: &str, message: impl std::fmt::Display) {
         if !self.quiet {
-            self.progress.tell(&told::message(&format!("durer: {file}: {message}")));
+            self.progress.print(&wording::message(&format!("durer: {file}: {message}")));
         }
     }
 
     /// Prints a warning, or keeps it.
     fn warn(&self, text: &str) {
         if let Some(kept) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
-            kept.push(told::message(text).into_owned());
+            kept.push(wording::message(text).into_owned());
             return;
         }
-        self.progress.tell(&told::message(&format!("durer: warning: {text}")));
+        self.progress.print(&wording::message(&format!("durer: warning: {text}")));
     }
 
     /// Prints the warnings of a model.
@@ -66,11 +66,11 @@ impl Messages {
         if self.quiet {
             return;
         }
-        let told = if self.verbose { warnings.len() } else { warnings.len().min(WARNINGS) };
-        for warning in &warnings[..told] {
+        let shown = if self.verbose { warnings.len() } else { warnings.len().min(WARNINGS) };
+        for warning in &warnings[..shown] {
             self.warn(&format!("{file}: {warning}"));
         }
-        let rest = warnings.len() - told;
+        let rest = warnings.len() - shown;
         if rest > 0 {
             self.warn(&format!("{file}: and {rest} more; --verbose prints all"));
         }
@@ -79,7 +79,7 @@ impl Messages {
     /// Reports a step for `--verbose`.
     pub fn detail(&self, message: impl FnOnce() -> String) {
         if self.verbose {
-            self.progress.tell(&told::message(&format!("durer: {}", message())));
+            self.progress.print(&wording::message(&format!("durer: {}", message())));
         }
     }
 }

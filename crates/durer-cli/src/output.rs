@@ -6,7 +6,7 @@ use crate::kind::{Kind, Wanted};
 use crate::names;
 use crate::places::{Place, is_stream};
 use durer::work::{Charge, Work};
-use durer_formats::told::shown_path;
+use durer_formats::wording::shown_path;
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Write};

@@ -10,19 +10,19 @@ use std::sync::Mutex;
 static LAST: Mutex<String> = Mutex::new(String::new());
 
 /// Runs the work; if it panics, reports that and continues unwinding.
-pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
+pub fn reported_at_the_end<T>(work: impl FnOnce() -> T) -> T {
     set_hook(Box::new(|panic| {
-        let mut told = panic.to_string();
+        let mut report = panic.to_string();
         let calls = Backtrace::capture();
         if calls.status() == BacktraceStatus::Captured {
-            told += &format!("\n{calls}");
+            report += &format!("\n{calls}");
         }
-        *LAST.lock().unwrap_or_else(|e| e.into_inner()) = told;
+        *LAST.lock().unwrap_or_else(|e| e.into_inner()) = report;
     }));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
-        let told = LAST.lock().unwrap_or_else(|e| e.into_inner());
-        let _ = writeln!(std::io::stderr().lock(), "durer: this is a bug in durer: {told}");
-        drop(told);
+        let report = LAST.lock().unwrap_or_else(|e| e.into_inner());
+        let _ = writeln!(std::io::stderr().lock(), "durer: this is a bug in durer: {report}");
+        drop(report);
         resume_unwind(payload)
     })
 }

@@ -14,7 +14,7 @@ use durer::math::{DVec2, Rect};
 use durer::scene::{Scene, Topology};
 use durer::view::View;
 use durer::view::pick::{Area, Hit, objects, pick};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -80,7 +80,7 @@ impl Progress {
     }
 
     /// Writes a line to standard error without tearing the progress line.
-    pub fn tell(&self, line: &str) {
+    pub fn print(&self, line: &str) {
         use std::io::Write;
         // If standard error is closed, the line is lost.
         let write = || drop(writeln!(std::io::stderr().lock(), "{line}"));
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_counted_is_told_in_percent() {
+    fn what_is_counted_is_reported_in_percent() {
         let work = Work::stoppable();
         assert_eq!(percent(work.progress()), "");
         work.begin("rows", 3);

@@ -34,7 +34,7 @@ use durer::view::components::{Component, components};
 use durer::view::objects::divided;
 use durer::visibility::object::SceneOrientation;
 use durer::work::{Charge, Work};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use durer_formats::{Model, png};
 use jobs::{Job, Picture, plan};
 use scene_options::render_options;
@@ -48,7 +48,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let jobs = plan(args)?;
     let pictures = jobs.iter().map(|job| job.pictures.len() as u64).sum();
     let messages = Messages::new(&args.running, pictures);
-    idle::tell(args, &messages);
+    idle::warn(args, &messages);
     let mut report = Growing::new(args.json);
     let ended = render_all(args, &jobs, &messages, &mut report);
     drop(messages);
@@ -125,7 +125,7 @@ fn render_model(
     args: &RenderArgs,
     job: &Job,
     messages: &Messages,
-    told: &mut Growing,
+    reports: &mut Growing,
 ) -> Result<(), Failure> {
     let name = input::display_name(job.model);
     messages.progress.stage(|| format!("reading {name}"));
@@ -136,7 +136,7 @@ fn render_model(
     let pieces = input::in_pieces(job.model, &reading).transpose()?;
     let has_pieces = pieces.is_some();
     if let Some(pieces) = pieces.filter(|p| streamed::suits(args, job, &*p.pieces)) {
-        return streamed::render_model(args, job, pieces, messages, told);
+        return streamed::render_model(args, job, pieces, messages, reports);
     }
     let model = input::read(job.model, &reading);
     let mut model = if has_pieces { model.map_err(streamed::hinted)? } else { model? };
@@ -179,11 +179,11 @@ fn render_model(
         };
         let made = report
             .map_err(|failure| input::blamed(&name, &model.scene, with_file(&name, failure)))?;
-        tell_picture(&name, made, &mut noticed, messages, told);
+        report_picture(&name, made, &mut noticed, messages, reports);
     }
     film.map_or(Ok(()), Film::finish)?;
-    noticed.tell(&name, &mut model, messages);
-    tell_model(job, model, read_seconds, told);
+    noticed.warn(&name, &mut model, messages);
+    report_model(job, model, read_seconds, reports);
     Ok(())
 }
 
@@ -252,26 +252,26 @@ pub fn prepare(
 }
 
 /// Reports a picture and, if nothing of the model is visible in it, the reason.
-fn tell_picture(
+fn report_picture(
     name: &str,
     (report, unseen): (PictureReport, Option<String>),
     noticed: &mut Noticed,
     messages: &Messages,
-    told: &mut Growing,
+    reports: &mut Growing,
 ) {
     if let Some(why) = unseen {
         messages.warning(name, &why);
         noticed.unseen.get_or_insert(why);
     }
-    tell_differing(name, &report, messages);
+    warn_of_differing(name, &report, messages);
     messages.detail(|| describe(&report));
     messages.progress.advance();
     noticed.add(&report);
-    told.picture(&report);
+    reports.picture(&report);
 }
 
-fn tell_model(job: &Job, model: Model, read_seconds: f64, told: &mut Growing) {
-    told.model(&ModelReport {
+fn report_model(job: &Job, model: Model, read_seconds: f64, reports: &mut Growing) {
+    reports.model(&ModelReport {
         model: input::given_name(job.model),
         format: model.format,
         read_seconds,
@@ -286,7 +286,7 @@ fn colored(color: Vec4) -> Material {
 }
 
 /// Warns of algorithms that find other surfaces than the z-buffer at some pixels; all should find the same.
-fn tell_differing(name: &str, report: &PictureReport, messages: &Messages) {
+fn warn_of_differing(name: &str, report: &PictureReport, messages: &Messages) {
     for c in report.compared.iter().filter(|c| c.differing_pixels > 0) {
         let pixels = counted(c.differing_pixels, "pixel", "pixels");
         let algorithm = c.algorithm;

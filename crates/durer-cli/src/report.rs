@@ -8,7 +8,7 @@ pub use growing::Growing;
 
 use durer::pipeline::{self, Status, Unseen};
 use durer::scene::{Camera, Projection};
-use durer_formats::told;
+use durer_formats::wording;
 use serde::Serialize;
 use std::sync::{Mutex, PoisonError};
 
@@ -182,7 +182,7 @@ pub fn print(value: &impl Serialize) -> Result<(), crate::failure::Failure> {
     let mut text = serde_json::to_string_pretty(value)
         .map_err(|e| crate::failure::Failure::Data(format!("the report: {e}")))?;
     text.push('\n');
-    print_text(&told::json(&text))
+    print_text(&wording::json(&text))
 }
 
 /// Text that is kept instead of going to standard output, if requested.

@@ -86,7 +86,7 @@ impl Folder {
                 let other = missing.then(|| self.other_case(path)).flatten();
                 let spelled = other.ok_or_else(|| in_words(&error))?;
                 let full = fs::canonicalize(&spelled).map_err(|e| in_words(&e))?;
-                (full, Some(self.told(path, &spelled)))
+                (full, Some(self.other_case_note(path, &spelled)))
             }
         };
         if self.allows(&full) {
@@ -103,7 +103,7 @@ impl Folder {
         self.roots.iter().any(|root| full.starts_with(root))
     }
 
-    fn told(&self, path: &str, spelled: &Path) -> String {
+    fn other_case_note(&self, path: &str, spelled: &Path) -> String {
         let spelled = spelled.strip_prefix(&self.base).unwrap_or(spelled).display();
         format!("there is no `{path}`; `{spelled}` is taken, which differs in upper and lower case")
     }
@@ -220,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn schemes_are_told_from_paths() {
+    fn schemes_are_reported_from_paths() {
         for url in ["http://a/b", "https:b", "file:///etc/passwd", "data:x", "s3+x:y"] {
             assert!(has_scheme(url), "{url}");
         }

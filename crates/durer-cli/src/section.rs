@@ -8,7 +8,7 @@ use clap::Args;
 use durer::math::{DVec3, Plane, Vec4};
 use durer::scene::Scene;
 use durer::view::section::{self, Options, Section};
-use durer_formats::told::agreeing;
+use durer_formats::wording::agreeing;
 
 /// Words about cuts without a cap, after their number.
 pub const UNCAPPED: &str = "{cut through an open mesh has|cuts through open meshes have} no cap";

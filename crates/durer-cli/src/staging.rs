@@ -94,13 +94,13 @@ impl StageArgs {
 }
 
 /// Assigns the material of the look, if it has one, to all surfaces, in its own colour or the one requested.
-pub fn give_materials(args: &StageArgs, asked: Option<Vec4>, scene: &mut Scene) {
+pub fn give_materials(args: &StageArgs, requested: Option<Vec4>, scene: &mut Scene) {
     let (color, roughness) = match args.look {
         Look::Plain | Look::Studio => return,
         Look::Clay => (Vec4::new(0.62, 0.52, 0.44, 1.0), 0.9),
         Look::Technical => (Vec4::new(0.9, 0.9, 0.9, 1.0), 1.0),
     };
-    let color = asked.unwrap_or(color);
+    let color = requested.unwrap_or(color);
     let alpha_mode = if color.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
     for material in &mut scene.materials {
         *material = Material {

@@ -48,7 +48,7 @@ fn waiting(take: &Arc<Mutex<Receiver<rayon::ThreadBuilder>>>) -> io::Result<()> 
 
 /// Returns the number in `RAYON_NUM_THREADS`, or the number of processors.
 fn usual() -> usize {
-    let said = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok());
+    let given = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok());
     let processors = || available_parallelism().map_or(1, usize::from);
-    said.filter(|&count| count > 0).unwrap_or_else(processors)
+    given.filter(|&count| count > 0).unwrap_or_else(processors)
 }

@@ -30,7 +30,7 @@ mod tests {
     use toml::de::DeTable;
 
     #[test]
-    fn faults_are_told_plainly() {
+    fn faults_are_reported_plainly() {
         for (text, expected) in [
             ("a = 1\na = 2", "a key appears twice"),
             ("a = [1, 2", "a bracket or a quote is missing"),
@@ -41,11 +41,11 @@ mod tests {
             ("a = \"\\q\"", "after `\\` no known letter follows"),
         ] {
             let error = DeTable::parse(text).unwrap_err();
-            let told = fault(error.message());
-            assert!(told.starts_with(expected), "{text}: {told} ({})", error.message());
+            let shown = fault(error.message());
+            assert!(shown.starts_with(expected), "{text}: {shown} ({})", error.message());
         }
         let deep = format!("a = {}", "[".repeat(10_000));
-        let told = DeTable::parse(&deep).map(|_| ()).map_err(|e| fault(e.message()));
-        assert_eq!(told, Err("arrays and tables are nested too deep"));
+        let shown = DeTable::parse(&deep).map(|_| ()).map_err(|e| fault(e.message()));
+        assert_eq!(shown, Err("arrays and tables are nested too deep"));
     }
 }

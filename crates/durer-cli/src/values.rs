@@ -253,8 +253,8 @@ mod tests {
         let weakest = simd::name(simd::levels()[0]);
         assert!(simd_level("auto").is_ok() && simd_level(weakest).is_ok());
         assert_eq!(simd_level("scalar").is_ok(), cfg!(feature = "scalar"));
-        let told = simd_level("mmx").expect_err("no level");
-        assert!(told.starts_with(&format!("this machine has auto, {weakest}")), "{told}");
+        let refusal = simd_level("mmx").expect_err("no level");
+        assert!(refusal.starts_with(&format!("this machine has auto, {weakest}")), "{refusal}");
     }
 
     #[test]

@@ -16,7 +16,7 @@ use durer::shade::color::encode_rgba8;
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 use durer::view::warp::{self, Source, Warped};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -158,10 +158,10 @@ pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     if args.file.encoding.deliver(target, wanted.kind.picture(), &warped.framebuffer.color)? {
         messages.warning(&target.to_string(), encoding::FLATTENED);
     }
-    tell(args, target, &warped, &messages)
+    report_warp(args, target, &warped, &messages)
 }
 
-fn tell(
+fn report_warp(
     args: &WarpArgs,
     target: &output::Target,
     warped: &Warped,

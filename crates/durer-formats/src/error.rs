@@ -1,6 +1,6 @@
 //! The errors of readers and writers.
 
-use crate::told::{message, shown};
+use crate::wording::{message, shown};
 use thiserror::Error;
 
 /// Position in a file.
@@ -51,7 +51,7 @@ impl std::fmt::Display for Place {
 #[non_exhaustive]
 pub enum Error {
     /// The bytes do not conform to their format.
-    #[error("{}", crate::told::message(&format!("{place}{message}")))]
+    #[error("{}", crate::wording::message(&format!("{place}{message}")))]
     Decode {
         /// Position of the fault.
         place: Place,
@@ -81,7 +81,7 @@ pub enum Error {
         limit: u64,
     },
     /// A resource that the file refers to could not be read.
-    #[error("{}", crate::told::message(&format!("{place}cannot read `{}`: {message}", shown(uri))))]
+    #[error("{}", crate::wording::message(&format!("{place}cannot read `{}`: {message}", shown(uri))))]
     Resource {
         /// Position of the reference.
         place: Place,
@@ -91,7 +91,7 @@ pub enum Error {
         message: String,
     },
     /// The format is unknown, by content and by name.
-    #[error("{}", crate::told::message(&format!("not a known format: {}", .0)))]
+    #[error("{}", crate::wording::message(&format!("not a known format: {}", .0)))]
     Unknown(String),
     /// The library refused the value.
     #[error(transparent)]

@@ -96,7 +96,7 @@ fn camera(lens: &Lens, world: DMat4, behind: impl Fn(DVec3) -> f64) -> Result<Na
 }
 
 /// Warns of lights that do not shine, because [`ReadOptions::own_lights`](crate::ReadOptions) is off.
-pub(crate) fn tell_dark(count: usize, model: &mut Model) {
+pub(crate) fn warn_of_dark(count: usize, model: &mut Model) {
     let words = "{light of the file does|lights of the file do} not shine unless its own lights are requested";
     model.warn_counted(Place::Whole, count as u64, words);
 }
@@ -246,8 +246,8 @@ mod tests {
         let seen = &scene.cameras[0];
         assert_eq!((seen.aspect, seen.camera.target), (None, DVec3::new(0.0, 0.0, 8.0)));
         assert!((seen.camera.far - 10.1).abs() < 1e-9 && (seen.camera.near - 1e-3).abs() < 1e-9);
-        let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-        assert_eq!(told[0], "here: its node has no direction; the camera is left out");
-        assert_eq!(told[1], "here: it is blind; the camera is left out");
+        let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(messages[0], "here: its node has no direction; the camera is left out");
+        assert_eq!(messages[1], "here: it is blind; the camera is left out");
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of other crates in durer's words: their own mention Rust types and may quote a file's text at any length.
 
-use crate::told::shown;
+use crate::wording::shown;
 use quick_xml::Error as Xml;
 use quick_xml::errors::{IllFormedError, SyntaxError};
 use std::io::ErrorKind;

@@ -18,7 +18,7 @@ pub use png::{DeepImage, bits_per_sample, decode_deep};
 pub(crate) use png::{check_png_holds, is_grey};
 
 use crate::budget::DECODED;
-use crate::told::shown;
+use crate::wording::shown;
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
 

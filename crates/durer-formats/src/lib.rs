@@ -49,9 +49,9 @@ mod texels;
 mod text;
 pub mod threemf;
 pub mod tiles;
-pub mod told;
 mod unread;
 mod uri;
+pub mod wording;
 mod xml;
 pub mod xyz;
 

@@ -1,7 +1,7 @@
 //! The types that all readers of models share.
 
 use crate::text::Tally;
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Place, Warning};
 use durer::math::Vec3;
 use durer::scene::Scene;

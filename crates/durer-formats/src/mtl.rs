@@ -61,7 +61,7 @@ pub(crate) fn load(
         };
         model.scene.materials.push(material);
     }
-    notes.tell(model);
+    notes.warn(model);
 }
 
 /// Reads the libraries named by an `mtllib`: one file whose name may contain blanks, or else several.

@@ -12,7 +12,7 @@ use crate::last_digit::last_digit;
 use crate::model::count_infinite;
 use crate::obj::corners::NONE;
 use crate::text::{Cursor, Tally, quote, utf8};
-use crate::told::there_are;
+use crate::wording::there_are;
 use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result, place};
 use durer::math::{DVec3, Vec2, Vec4};
 use durer::scene::{Instance, Mesh, Topology};

@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn the_unknown_is_told_what_is_known() {
+    fn the_unknown_is_reported_what_is_known() {
         let message = |bytes: &[u8], name: &str| {
             let e = read_model(bytes, name, &NoResources, &ReadOptions::default());
             e.expect_err("unknown").to_string()

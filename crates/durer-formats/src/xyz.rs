@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_told_by_their_values() {
+    fn columns_are_reported_by_their_values() {
         let red = Vec4::new(1.0, 0.0, 0.0, 1.0);
         for text in [
             "0 0 0 255 0 0\n1 1 1 0 0 255",
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_point_is_told() {
+    fn what_is_no_point_is_reported() {
         let model = read_ok("0 0 0\n1 1\nend of scan\n1 1 1\n");
         assert_eq!(model.scene.meshes[0].positions.len(), 2);
         assert_eq!(model.warnings[0].to_string(), "line 2: 2 lines hold no point and were skipped");

@@ -5,7 +5,7 @@
 use durer_wasm::{Answer, Engine};
 use serde_json::{Value, json};
 
-fn asked(request: &Value, file: &[u8]) -> Answer {
+fn requested(request: &Value, file: &[u8]) -> Answer {
     let mut bytes = request.to_string().into_bytes();
     bytes.push(0);
     bytes.extend(file);
@@ -14,15 +14,16 @@ fn asked(request: &Value, file: &[u8]) -> Answer {
 
 #[test]
 fn files_become_inputs() {
-    let read = |name: &str, file: &[u8]| match asked(&json!({ "do": "read", "name": name }), file) {
-        Answer::Json(text) => serde_json::from_str::<Value>(&text).expect("JSON"),
-        other => panic!("{name}: {other:?}"),
-    };
+    let read =
+        |name: &str, file: &[u8]| match requested(&json!({ "do": "read", "name": name }), file) {
+            Answer::Json(text) => serde_json::from_str::<Value>(&text).expect("JSON"),
+            other => panic!("{name}: {other:?}"),
+        };
     let line = read("a.wkt", b"LINESTRING (0 1, 13 8)");
     assert_eq!(line["input"], json!({ "figure": { "lines": [[[0.0, 1.0], [13.0, 8.0]]] } }));
     let faces = read("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(faces["input"]["faces"].as_array().expect("faces").len(), 1);
-    let wrong = asked(&json!({ "do": "read", "name": "a.obj" }), b"f 1 2\n\0\0");
+    let wrong = requested(&json!({ "do": "read", "name": "a.obj" }), b"f 1 2\n\0\0");
     assert!(matches!(wrong, Answer::Error(text) if text.contains("a.obj: ")));
 }
 
@@ -31,12 +32,12 @@ fn models_are_rendered() {
     let request = |method: &str| json!({ "do": "render", "name": "a.obj", "method": method, "width": 40, "height": 30, "azimuth": 30.0, "elevation": 20.0 });
     let teapot = include_bytes!("../../../samples/teapot.obj");
     for method in ["z-buffer", "scan-line-z"] {
-        let answer = asked(&request(method), teapot);
+        let answer = requested(&request(method), teapot);
         assert!(
             matches!(answer, Answer::Bytes(png) if png.starts_with(b"\x89PNG") && png.len() > 500)
         );
     }
-    let wrong = asked(&request("guess"), teapot);
+    let wrong = requested(&request("guess"), teapot);
     assert!(matches!(wrong, Answer::Error(text) if text.contains("guess")));
 }
 
@@ -46,8 +47,8 @@ fn counts_of_operations_come_before_the_picture() {
     let request = |counts: bool, method: &str| json!({ "do": "render", "name": "a.obj", "method": method, "width": 20, "height": 20, "azimuth": 0.0, "elevation": 0.0, "counts": counts });
     let model = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n";
     let counted = |method: &str| {
-        let Answer::Bytes(plain) = asked(&request(false, method), model) else { panic!() };
-        let Answer::Bytes(both) = asked(&request(true, method), model) else { panic!() };
+        let Answer::Bytes(plain) = requested(&request(false, method), model) else { panic!() };
+        let Answer::Bytes(both) = requested(&request(true, method), model) else { panic!() };
         let end = both.iter().position(|&byte| byte == 0).expect("a zero byte");
         assert!(both[end + 1..] == plain, "{method}");
         let value: Value = serde_json::from_slice(&both[..end]).expect("JSON");
@@ -65,7 +66,7 @@ fn counts_of_operations_come_before_the_picture() {
 fn a_formula_gives_curves_from_near_to_far() {
     let request =
         |formula: &str| json!({ "do": "formula", "formula": formula, "columns": 5, "curves": 3 });
-    let Answer::Json(text) = asked(&request("x + z"), &[]) else { panic!("no curves") };
+    let Answer::Json(text) = requested(&request("x + z"), &[]) else { panic!("no curves") };
     let read: Value = serde_json::from_str(&text).expect("JSON");
     let lines = read["input"]["figure"]["lines"].as_array().expect("lines");
     assert_eq!(lines.len(), 3);
@@ -80,7 +81,7 @@ fn a_formula_gives_curves_from_near_to_far() {
     let answer = engine.answer(run.to_string().as_bytes());
     assert!(matches!(&answer, Answer::Json(_)), "{answer:?}");
     for (formula, words) in [("x +", "column"), ("1/x", "no value"), ("4e307*x", "too much")] {
-        let wrong = asked(&request(formula), &[]);
+        let wrong = requested(&request(formula), &[]);
         assert!(matches!(&wrong, Answer::Error(text) if text.contains(words)), "{wrong:?}");
     }
 }

@@ -3,7 +3,7 @@
 use durer_wasm::{Answer, Engine};
 use serde_json::{Value, json};
 
-fn asked(engine: &mut Engine, request: &Value) -> Value {
+fn requested(engine: &mut Engine, request: &Value) -> Value {
     match engine.answer(request.to_string().as_bytes()) {
         Answer::Json(text) => serde_json::from_str(&text).expect("JSON"),
         other => panic!("{request}: {other:?}"),
@@ -22,7 +22,7 @@ fn refused(engine: &mut Engine, request: &str) -> String {
 
 #[test]
 fn every_lesson_is_listed_and_has_the_parts_of_a_page() {
-    let list = asked(&mut Engine::default(), &json!({ "do": "lessons" }));
+    let list = requested(&mut Engine::default(), &json!({ "do": "lessons" }));
     let families = list["families"].as_array().unwrap();
     let lessons: Vec<&Value> =
         families.iter().flat_map(|family| family["lessons"].as_array().unwrap()).collect();
@@ -54,20 +54,20 @@ fn every_lesson_is_listed_and_has_the_parts_of_a_page() {
 fn a_run_is_stepped_through() {
     let mut engine = Engine::default();
     let request = json!({ "do": "run", "name": "cohen-sutherland", "input": { "example": "line-eh" }, "cap": 100 });
-    let run = asked(&mut engine, &request);
+    let run = requested(&mut engine, &request);
     assert_eq!(run["steps"], 4);
     assert_eq!(run["input"]["figure"]["window"], json!([0.0, 0.0, 10.0, 6.0]));
     let kinds = run["templates"].as_array().unwrap();
     assert_eq!(kinds, json!([0, 1, 1, 2]).as_array().unwrap());
     let request = json!({ "do": "frame", "handle": run["handle"], "step": 1, "language": "de", "longest": 500 });
-    let frame = asked(&mut engine, &request);
+    let frame = requested(&mut engine, &request);
     assert!(frame["svg"].as_str().unwrap().starts_with("<svg"));
     assert!(frame["frame"]["caption"].as_str().unwrap().contains("wandert nach (0; "));
     assert_eq!(frame["map"]["input"], json!([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]));
     assert_eq!(frame["frame"]["table"]["rows"][0]["cells"][0]["changed"], true);
     let request = json!({ "do": "captions", "handle": run["handle"], "first": 2, "count": 9, "language": "en" });
-    assert_eq!(asked(&mut engine, &request)["captions"].as_array().unwrap().len(), 2);
-    asked(&mut engine, &json!({ "do": "drop", "handle": run["handle"] }));
+    assert_eq!(requested(&mut engine, &request)["captions"].as_array().unwrap().len(), 2);
+    requested(&mut engine, &json!({ "do": "drop", "handle": run["handle"] }));
     assert!(refused(&mut engine, &request.to_string()).contains("does not exist"));
 }
 
@@ -87,7 +87,7 @@ fn own_inputs_come_back_as_they_went_in() {
     ];
     for (name, input) in inputs {
         let request = json!({ "do": "run", "name": name, "input": input, "cap": 50 });
-        let run = asked(&mut engine, &request);
+        let run = requested(&mut engine, &request);
         assert_eq!(run["input"], input, "{name}");
         assert!(run["steps"].as_u64().unwrap() > 2, "{name}");
     }
@@ -100,7 +100,7 @@ fn choices_are_those_that_change_the_run() {
         let input = json!({ "example": example });
         let request =
             json!({ "do": "run", "name": name, "input": input, "cap": 9, "choices": true });
-        asked(&mut engine, &request)["choices"].clone()
+        requested(&mut engine, &request)["choices"].clone()
     };
     let overlay = choices("weiler-atherton", "");
     assert_eq!(overlay["operations"].as_array().unwrap().len(), 4, "{overlay}");
@@ -113,7 +113,7 @@ fn choices_are_those_that_change_the_run() {
         let input = json!({ "figure": figure });
         let request =
             json!({ "do": "run", "name": name, "input": input, "cap": 9, "choices": true });
-        asked(&mut engine, &request)["choices"].clone()
+        requested(&mut engine, &request)["choices"].clone()
     };
     let twice = json!([[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]);
     let rules = own("edge-table", json!({ "rings": [twice] }));
@@ -136,10 +136,10 @@ fn long_lists_have_their_ends() {
     let figure = json!({ "rings": [star(0.0)], "clip": [star(0.05)] });
     let mut engine = Engine::default();
     let request = json!({ "do": "run", "name": "weiler-atherton", "input": { "figure": figure }, "cap": 100_000 });
-    let run = asked(&mut engine, &request);
+    let run = requested(&mut engine, &request);
     let last = run["steps"].as_u64().unwrap() - 1;
     let request = json!({ "do": "frame", "handle": run["handle"], "step": last, "language": "en" });
-    let frame = asked(&mut engine, &request);
+    let frame = requested(&mut engine, &request);
     let list = frame["frame"]["table"]["rows"][0]["cells"][0]["text"].as_str().unwrap();
     assert!(list.starts_with("0 ") && list.contains(" more … "), "{list}");
     let caption = frame["frame"]["caption"].as_str().unwrap();
@@ -175,13 +175,13 @@ fn many_steps_are_kept_and_found() {
     let face: Vec<[f64; 3]> = ring.iter().map(|[x, y]| [*x, *y, 1.0]).collect();
     let faces = vec![face; 3];
     let request = json!({ "do": "run", "name": "z-buffer-loop", "input": { "faces": faces }, "cap": 100_000 });
-    let run = asked(&mut engine, &request);
+    let run = requested(&mut engine, &request);
     let steps = run["steps"].as_u64().unwrap();
     assert!(steps > 1_000, "{steps}");
     for step in [0, steps / 2, steps - 1] {
         let request =
             json!({ "do": "frame", "handle": run["handle"], "step": step, "language": "en" });
-        assert!(asked(&mut engine, &request)["svg"].as_str().unwrap().len() > 1_000);
+        assert!(requested(&mut engine, &request)["svg"].as_str().unwrap().len() > 1_000);
     }
 }
 
@@ -192,11 +192,11 @@ fn long_tables_are_cut_in_the_middle() {
     let cells = vec![0; 30 * 30];
     let grid = json!({ "columns": 30, "cells": cells, "seed": [0, 0] });
     let run = json!({ "do": "run", "name": "naive", "input": { "grid": grid }, "cap": 100_000 });
-    let run = asked(&mut engine, &run);
+    let run = requested(&mut engine, &run);
     let mut rows = |step: usize| {
         let frame =
             json!({ "do": "frame", "handle": run["handle"], "step": step, "language": "de" });
-        asked(&mut engine, &frame)["frame"]["table"]["rows"].as_array().expect("rows").clone()
+        requested(&mut engine, &frame)["frame"]["table"]["rows"].as_array().expect("rows").clone()
     };
     assert_eq!(rows(3).len(), 3);
     let long = rows(2_000);
@@ -214,8 +214,8 @@ fn old_runs_make_room() {
     let mut engine = Engine::default();
     let request =
         json!({ "do": "run", "name": "bresenham", "input": { "example": "" }, "cap": 10 });
-    let first = asked(&mut engine, &request)["handle"].clone();
-    (0..16).for_each(|_| drop(asked(&mut engine, &request)));
+    let first = requested(&mut engine, &request)["handle"].clone();
+    (0..16).for_each(|_| drop(requested(&mut engine, &request)));
     let frame = json!({ "do": "frame", "handle": first, "step": 0, "language": "en" });
     assert!(refused(&mut engine, &frame.to_string()).contains("only the last 16"));
 }
@@ -226,9 +226,9 @@ fn frames_say_what_their_step_is_about() {
     let mut targets = |name: &str, example: &str, step: usize| {
         let input = json!({ "example": example });
         let request = json!({ "do": "run", "name": name, "input": input, "cap": 50 });
-        let handle = asked(&mut engine, &request)["handle"].clone();
+        let handle = requested(&mut engine, &request)["handle"].clone();
         let request = json!({ "do": "frame", "handle": handle, "step": step, "language": "en" });
-        asked(&mut engine, &request)["targets"].clone()
+        requested(&mut engine, &request)["targets"].clone()
     };
     // The cut at the left border: the border and the new end.
     let cut = json!([{ "line": [[0.0, 0.0], [0.0, 6.0]] }, { "point": [0.0, 1.96875] }]);
@@ -243,14 +243,14 @@ fn programs_with_faults_run_in_place_of_the_library() {
     let mut captions = |fault: Value| {
         let input = json!({ "example": "line-eh" });
         let request = json!({ "do": "run", "name": "cohen-sutherland", "input": input, "cap": 50, "fault": fault });
-        let handle = asked(&mut engine, &request)["handle"].clone();
+        let handle = requested(&mut engine, &request)["handle"].clone();
         let request = json!({ "do": "captions", "handle": handle, "first": 0, "count": 50, "language": "en" });
-        asked(&mut engine, &request)["captions"].clone()
+        requested(&mut engine, &request)["captions"].clone()
     };
     let right = captions(Value::Null);
     assert_eq!(right.as_array().unwrap().len(), 4);
     assert_ne!(captions(json!(0)), right);
-    let list = asked(&mut engine, &json!({ "do": "lessons" }));
+    let list = requested(&mut engine, &json!({ "do": "lessons" }));
     let families = list["families"].as_array().unwrap().iter();
     let lessons = families.flat_map(|family| family["lessons"].as_array().unwrap());
     let faulty = lessons.filter(|lesson| !lesson["faults"].as_array().unwrap().is_empty());

@@ -156,11 +156,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_are_told_shortly() {
-        let told = [0, 999, 1000, 1536, 64 << 20, 67_500_000, 1 << 30, u64::MAX].map(in_words);
+    fn bytes_are_reported_shortly() {
+        let reported = [0, 999, 1000, 1536, 64 << 20, 67_500_000, 1 << 30, u64::MAX].map(in_words);
         let expected =
             ["0 bytes", "999 bytes", "1 kB", "1.5 kB", "64 MB", "64.4 MB", "1 GB", "16 EB"];
-        assert_eq!(told, expected);
+        assert_eq!(reported, expected);
     }
 
     #[test]

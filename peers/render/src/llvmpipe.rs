@@ -53,9 +53,9 @@ fn command(harness: &Path, threads: u32) -> Command {
 fn medians(mut command: Command, harness: &Path) -> Result<Cost> {
     let output = command.output().map_err(|e| format!("{}: {e}", harness.display()))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    let told = String::from_utf8_lossy(&output.stderr);
-    if !output.status.success() || !told.contains("llvmpipe") {
-        return Err(format!("{}: {told}", harness.display()).into());
+    let reported = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() || !reported.contains("llvmpipe") {
+        return Err(format!("{}: {reported}", harness.display()).into());
     }
     let value = |name: &str| -> Result<f64> {
         let word = text.split_whitespace().find_map(|w| w.strip_prefix(name));

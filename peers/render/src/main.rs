@@ -22,7 +22,7 @@ mod vulkan;
 
 use std::process::ExitCode;
 
-/// Any error, told to the user as it is.
+/// Any error, reported to the user as it is.
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 const USAGE: &str = "\

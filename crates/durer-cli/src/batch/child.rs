@@ -31,8 +31,8 @@ pub struct Worker {
     /// Warning about a restriction that the system does not support.
     pub warning: Option<String>,
     /// The last that it wrote to standard error.
-    told: Arc<Mutex<Vec<u8>>>,
-    telling: Option<JoinHandle<()>>,
+    printed: Arc<Mutex<Vec<u8>>>,
+    listener: Option<JoinHandle<()>>,
 }
 
 /// Outcome of a row in a worker.
@@ -70,21 +70,21 @@ impl Worker {
                 }
             });
         }
-        let told = Arc::<Mutex<Vec<u8>>>::default();
-        let telling = child.stderr.take().map(|mut stderr| {
-            let told = Arc::clone(&told);
+        let printed = Arc::<Mutex<Vec<u8>>>::default();
+        let listener = child.stderr.take().map(|mut stderr| {
+            let printed = Arc::clone(&printed);
             std::thread::spawn(move || {
                 let mut piece = [0; MESSAGES];
                 while let Ok(count @ 1..) = stderr.read(&mut piece) {
-                    let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
-                    told.extend_from_slice(&piece[..count]);
-                    let excess = told.len().saturating_sub(MESSAGES);
-                    told.drain(..excess);
+                    let mut printed = printed.lock().unwrap_or_else(PoisonError::into_inner);
+                    printed.extend_from_slice(&piece[..count]);
+                    let excess = printed.len().saturating_sub(MESSAGES);
+                    printed.drain(..excess);
                 }
             })
         });
         let stdin = child.stdin.take();
-        let mut worker = Self { child, stdin, answers, warning: None, told, telling };
+        let mut worker = Self { child, stdin, answers, warning: None, printed, listener };
         let said = worker.say(setup).map(|()| worker.answers.recv_timeout(START));
         let ready = match said {
             Ok(Ok(line)) => serde_json::from_str::<Ready>(&line).ok(),
@@ -147,12 +147,12 @@ impl Worker {
         self.stdin = None;
         let _ = self.child.kill();
         let ended = self.child.wait();
-        if let Some(telling) = self.telling.take() {
-            let _ = telling.join();
+        if let Some(listener) = self.listener.take() {
+            let _ = listener.join();
         }
-        let told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let told = String::from_utf8_lossy(&told);
-        let last = told.lines().rev().find(|line| !line.trim().is_empty());
+        let printed = self.printed.lock().unwrap_or_else(PoisonError::into_inner);
+        let printed = String::from_utf8_lossy(&printed);
+        let last = printed.lines().rev().find(|line| !line.trim().is_empty());
         match last.map(|line| line.strip_prefix("durer: ").unwrap_or(line)) {
             Some(line) => line.to_owned(),
             None => ended.map_or_else(|e| in_words(&e), in_few_words),

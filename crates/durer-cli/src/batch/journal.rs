@@ -3,7 +3,7 @@
 use super::entry::Entry;
 use super::shard::Shard;
 use crate::failure::{Failure, in_words};
-use durer_formats::told;
+use durer_formats::wording;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -66,7 +66,7 @@ impl Journal {
     pub fn append(&mut self, entry: &Entry) -> Result<(), Failure> {
         let fail = |e: &io::Error| Failure::of_file(&self.path, in_words(e));
         let text = serde_json::to_string(entry).map_err(|e| fail(&e.into()))?;
-        let line = format!("{}\n", told::json(&text));
+        let line = format!("{}\n", wording::json(&text));
         self.file.write_all(line.as_bytes()).map_err(|e| fail(&e))
     }
 }

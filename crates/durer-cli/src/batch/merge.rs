@@ -51,7 +51,7 @@ fn write_lines<'a>(
     let written = output::deliver(target, &Work::default(), |out| {
         for entry in entries {
             let text = serde_json::to_string(entry).map_err(std::io::Error::from)?;
-            writeln!(out, "{}", durer_formats::told::json(&text))?;
+            writeln!(out, "{}", durer_formats::wording::json(&text))?;
         }
         Ok(())
     });

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use crate::watch;
 use durer::Error;
 use durer::work::Work;
-use durer_formats::told;
+use durer_formats::wording;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -220,7 +220,7 @@ impl<'a> Pool<'a> {
         }
         let warning = started.as_mut().ok().and_then(|worker| worker.warning.take());
         if let Some(warning) = warning.filter(|_| !self.warned.swap(true, Ordering::Relaxed)) {
-            self.progress.tell(&format!("durer: warning: {warning}"));
+            self.progress.print(&format!("durer: warning: {warning}"));
         }
         started
     }
@@ -236,7 +236,7 @@ impl<'a> Pool<'a> {
                 let place = if error.place.is_empty() { "" } else { ": " };
                 let message =
                     format!("durer: {}: {}{place}{}", entry.id, error.place, error.message);
-                self.progress.tell(&told::message(&message));
+                self.progress.print(&wording::message(&message));
             }
         }
         self.count(entry.status, false);

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn shards_are_told_by_words_or_by_the_environment() {
+    fn shards_are_reported_by_words_or_by_the_environment() {
         let none = |_: &str| None;
         assert_eq!(Shard::parse("2/5", none).unwrap(), Shard { index: 2, count: 5 });
         for wrong in ["", "5/5", "1", "a/b", "-1/3", "0/0", "auto"] {

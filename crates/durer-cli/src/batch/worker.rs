@@ -14,7 +14,7 @@ use crate::{clip, draw, info, plot, render, tiles};
 use clap::CommandFactory;
 use durer::Error;
 use durer::work::Work;
-use durer_formats::told::shown_path;
+use durer_formats::wording::shown_path;
 use serde::Serialize;
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};

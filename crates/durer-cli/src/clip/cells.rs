@@ -13,7 +13,7 @@ use durer::clip::mask::Rules;
 use durer::clip::polygon::{Shapes, WindingRule};
 use durer::parallel;
 use durer_formats::geo::{Feature, Member};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use std::path::Path;
 
 /// The cells of a file.

@@ -30,9 +30,9 @@ pub fn read(
             let area = Area::of_geometry(geometry);
             rings |= !area.shapes.is_empty();
             // An SVG or an option gives the fill rule of crossing polygons.
-            let asked = args.cutting.fill_rule.is_some() || from == GeoFormat::Svg;
+            let requested = args.cutting.fill_rule.is_some() || from == GeoFormat::Svg;
             let clean = rules(args, &feature).clean(geometry).map_err(|e| fail(e.to_string()))?;
-            repaired |= !asked && clean.repaired;
+            repaired |= !requested && clean.repaired;
             all.append(&clean.area);
         }
     }

@@ -23,7 +23,7 @@ use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule};
 use durer::parallel;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, System, Writer};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use report::Report;
 use srids::Srids;
 use std::time::Instant;
@@ -75,8 +75,8 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let mut ended = Ok(());
     let (is_shifted, further) = {
         let (messages, reader, report) = (&messages, &mut reader, &mut report);
-        let (failed, told) = (None, None);
-        let mut job = Job { args, to, messages, reader, report, failed, shift, fields, told };
+        let (failed, stated) = (None, None);
+        let mut job = Job { args, to, messages, reader, report, failed, shift, fields, stated };
         match (cells, args.region.tiles, mask) {
             (Some(cells), ..) => job.cut_by_cells(&cells)?,
             // Tiles in files of their own may be there in part.
@@ -86,13 +86,13 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
             (None, None, None) if converts => job.convert()?,
             (None, None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
         }
-        let shifted = job.shift.as_ref().and_then(Shift::told);
-        (job.shift.is_some(), [job.fields.told(), shifted, job.unfit(), job.no_degrees()])
+        let shifted = job.shift.as_ref().and_then(Shift::warning);
+        (job.shift.is_some(), [job.fields.warning(), shifted, job.unfit(), job.no_degrees()])
     };
     if ended.is_err() && report.broken_off.is_none() {
         return ended;
     }
-    tell(&messages, args, to, &reader, &mut report, is_shifted, further.into_iter().flatten());
+    warn(&messages, args, to, &reader, &mut report, is_shifted, further.into_iter().flatten());
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
@@ -193,7 +193,7 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
 }
 
 /// Prints the warnings of reading and of cutting.
-fn tell(
+fn warn(
     messages: &Messages,
     args: &ClipArgs,
     to: GeoFormat,
@@ -248,11 +248,11 @@ fn tell(
         }
         _ => {}
     }
-    let told = args.systems.from_crs.as_ref().map_or_else(|| reader.system(), Crs::system);
-    found.extend(report.srids.other_mask(&report.mask_srids, &told));
+    let stated = args.systems.from_crs.as_ref().map_or_else(|| reader.system(), Crs::system);
+    found.extend(report.srids.other_mask(&report.mask_srids, &stated));
     if !is_shifted {
-        let is_told = reader.system().code.is_some() && to.is_lonlat();
-        found.extend(report.srids.told(joins(args), to, is_told));
+        let is_stated = reader.system().code.is_some() && to.is_lonlat();
+        found.extend(report.srids.warnings(joins(args), to, is_stated));
     }
     found.extend(further);
     let (lines, points) = (report.given.lines, report.given.points);
@@ -294,7 +294,7 @@ struct Job<'a> {
     shift: Option<Shift>,
     fields: Fields,
     /// The coordinate system that the file states before its features; none before the first.
-    told: Option<System>,
+    stated: Option<System>,
 }
 
 impl Job<'_> {
@@ -364,8 +364,8 @@ impl Job<'_> {
             Some(writer) => writer,
             None => self.writer()?,
         };
-        let told = layer::finish(writer, &self.args.output, &self.members(), self.messages)?;
-        self.report.warnings.extend(told);
+        let lost = layer::finish(writer, &self.args.output, &self.members(), self.messages)?;
+        self.report.warnings.extend(lost);
         Ok(())
     }
 

@@ -26,9 +26,9 @@ impl Srids {
     }
 
     /// Adds the system that a file states for all its features, unless they have their own.
-    pub fn of_file(&mut self, told: &System) {
+    pub fn of_file(&mut self, stated: &System) {
         if self.first.is_empty() {
-            self.add(told.code);
+            self.add(stated.code);
         }
     }
 
@@ -47,11 +47,11 @@ impl Srids {
         format!("{name} {}{}", numbers.join(", "), if more { " and others" } else { "" })
     }
 
-    /// Returns a warning if the mask is in another coordinate system than the features; `told` is the system that their
+    /// Returns a warning if the mask is in another coordinate system than the features; `stated` is the system that their
     /// file states for all.
-    pub fn other_mask(&self, mask: &Self, told: &System) -> Option<String> {
+    pub fn other_mask(&self, mask: &Self, stated: &System) -> Option<String> {
         let mut own = self.clone();
-        own.of_file(told);
+        own.of_file(stated);
         if own.first.is_empty() || mask.first.is_empty() {
             return None;
         }
@@ -70,25 +70,25 @@ impl Srids {
         })
     }
 
-    /// Returns warnings about coordinate systems that get lost; `is_told` tells whether the result states the system of
+    /// Returns warnings about coordinate systems that get lost; `is_stated` tells whether the result states the system of
     /// all features.
-    pub fn told(&self, joined: bool, to: GeoFormat, is_told: bool) -> Vec<String> {
-        let mut told = Vec::new();
+    pub fn warnings(&self, joined: bool, to: GeoFormat, is_stated: bool) -> Vec<String> {
+        let mut warnings = Vec::new();
         if self.first.is_empty() {
-            return told;
+            return warnings;
         }
         let several = self.first.len() > 1;
         let is_meant = to.is_lonlat() && self.first == [4326];
-        if !to.tells_system() && !is_meant && !is_told {
+        if !to.states_system() && !is_meant && !is_stated {
             let are = if several { "are" } else { "is" };
-            told.push(format!(
+            warnings.push(format!(
                 "{} {are} left out: {} has no place for it",
                 self.names(),
                 to.name()
             ));
         } else if joined && several {
-            told.push("features of several SRIDs are joined; the result has none".to_owned());
+            warnings.push("features of several SRIDs are joined; the result has none".to_owned());
         }
-        told
+        warnings
     }
 }

@@ -7,7 +7,7 @@ use crate::options::TileCoordinates;
 use durer::math::DVec2;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 
 /// Largest longitude that data may mean: lines that are not cut at the 180th meridian go on beyond it.
 const LONGITUDE: f64 = 360.0;
@@ -18,23 +18,24 @@ const LATITUDE: f64 = 90.0;
 impl Job<'_> {
     /// Notes the system that the file states, with the first feature.
     pub(super) fn begin(&mut self) {
-        if self.told.is_none() {
-            let told = self.reader.system();
+        if self.stated.is_none() {
+            let stated = self.reader.system();
             if self.shift.is_none() && self.args.region.tiles.is_some() {
-                self.shift = self.to_tiles(&told);
+                self.shift = self.to_tiles(&stated);
             }
-            self.shift.iter_mut().for_each(|shift| shift.begin(told.clone()));
-            self.told = Some(told);
+            self.shift.iter_mut().for_each(|shift| shift.begin(stated.clone()));
+            self.stated = Some(stated);
         }
     }
 
     /// Returns the conversion to the coordinates of tiles, if the file states another system.
-    fn to_tiles(&self, told: &System) -> Option<Shift> {
+    fn to_tiles(&self, stated: &System) -> Option<Shift> {
         let code =
             if self.args.region.tile_coordinates == TileCoordinates::Lonlat { 4326 } else { 3857 };
         let given = self.args.systems.from_crs.is_some();
         // GeoJSON without a member crs is taken as the option says.
-        let is_meant = *told == System::LONLAT || told.is_unknown() || told.code == Some(code);
+        let is_meant =
+            *stated == System::LONLAT || stated.is_unknown() || stated.code == Some(code);
         let to = Crs::of_code(code).filter(|_| given || !is_meant)?;
         Shift::new(&SystemArgs { to_crs: Some(to), ..self.args.systems.clone() })
     }
@@ -46,7 +47,7 @@ impl Job<'_> {
             || self.shift.is_some()
             || self.args.systems.from_crs.is_some()
             || feature.srid.is_some()
-            || self.told.as_ref().is_some_and(|told| !told.is_unknown());
+            || self.stated.as_ref().is_some_and(|stated| !stated.is_unknown());
         if is_stated || !self.to.is_lonlat() {
             return;
         }
@@ -71,8 +72,8 @@ impl Job<'_> {
     /// Refuses a system that the file states after its features, if they would have been treated otherwise.
     pub(super) fn check_system(&self) -> Result<(), Failure> {
         let matters =
-            self.shift.is_some() || self.args.region.tiles.is_some() || self.to.tells_system();
-        match late(self.told.as_ref(), self.reader) {
+            self.shift.is_some() || self.args.region.tiles.is_some() || self.to.states_system();
+        match late(self.stated.as_ref(), self.reader) {
             Some((why, option)) if matters && self.args.systems.from_crs.is_none() => {
                 Err(self.fail(format!("{why}; {option} sets their system")))
             }
@@ -86,9 +87,9 @@ impl Job<'_> {
             (Some(shift), _) => shift.system.clone(),
             (None, Some(from)) => from.system(),
             (None, None) => {
-                let told = self.reader.system();
-                let common = self.report.srids.common().filter(|_| told.is_unknown());
-                common.map_or(told, System::of_code)
+                let stated = self.reader.system();
+                let common = self.report.srids.common().filter(|_| stated.is_unknown());
+                common.map_or(stated, System::of_code)
             }
         }
     }
@@ -101,18 +102,18 @@ impl Job<'_> {
         }
         let is_new = self.shift.is_some() || self.args.systems.from_crs.is_some();
         members.retain(|member| !is_new || member.name != CRS);
-        let told = members.iter().any(|member| member.name == CRS);
-        let told_by_file = is_new || !self.reader.system().is_unknown();
-        members.extend(self.system().member().filter(|_| !told && told_by_file));
+        let stated = members.iter().any(|member| member.name == CRS);
+        let stated_by_file = is_new || !self.reader.system().is_unknown();
+        members.extend(self.system().member().filter(|_| !stated && stated_by_file));
         members
     }
 
     /// Returns a warning if GeoJSON has coordinates other than longitude and latitude.
     pub(super) fn unfit(&self) -> Option<String> {
         let code = self.system().code.filter(|code| *code != 4326 && self.to.is_lonlat())?;
-        let told = self.members().iter().any(|member| member.name == CRS);
+        let stated = self.members().iter().any(|member| member.name == CRS);
         let own = self.reader.members().iter().any(|member| member.name == CRS);
-        (told && (self.shift.is_some() || !own)).then(|| {
+        (stated && (self.shift.is_some() || !own)).then(|| {
             format!(
                 "{} should have longitudes and latitudes (RFC 7946); coordinates in EPSG:{code} are marked \
                  by the older member crs, which some programs ignore",

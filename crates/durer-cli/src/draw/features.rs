@@ -28,14 +28,14 @@ impl Job<'_> {
         let mut fields = Fields::new(&FieldArgs { conditions, ..FieldArgs::default() });
         let (from_crs, to_crs) = (given.layer.from_crs.clone(), self.args.to_crs.clone());
         let mut shift = Shift::new(&SystemArgs { from_crs, to_crs });
-        let mut told = None;
+        let mut stated = None;
         while let Some(mut feature) = reader.next_feature().map_err(fail)? {
             all += 1;
             if let Some(shift) = &mut shift
-                && told.is_none()
+                && stated.is_none()
             {
                 shift.begin(reader.system());
-                told = Some(reader.system());
+                stated = Some(reader.system());
             }
             if !fields.apply(&mut feature) {
                 continue;
@@ -49,14 +49,14 @@ impl Job<'_> {
             crate::layer::keep(&feature, &self.args.running.work).map_err(|e| fail(e.into()))?;
             features.push(feature);
         }
-        if let Some((why, option)) = late(told.as_ref(), &reader)
+        if let Some((why, option)) = late(stated.as_ref(), &reader)
             && given.layer.from_crs.is_none()
         {
             return Err(Failure::Data(format!("{name}: {why}; {option} sets their system")));
         }
         let none = (features.is_empty() && all > lost).then(|| none_meets(all - lost));
-        let shifted = shift.as_ref().and_then(Shift::told);
-        for message in fields.told().into_iter().chain(none).chain(shifted) {
+        let shifted = shift.as_ref().and_then(Shift::warning);
+        for message in fields.warning().into_iter().chain(none).chain(shifted) {
             self.messages.warning(&name, &message);
             self.report.warnings.push(message);
         }
@@ -86,10 +86,10 @@ pub(super) struct Systems {
 
 impl Systems {
     /// Adds a layer with the system that its file, or else its first feature, states.
-    fn add(&mut self, features: &[Feature], told: &System, name: &str) {
+    fn add(&mut self, features: &[Feature], stated: &System, name: &str) {
         let own = || features.first().and_then(|f| f.srid).map(System::of_code);
-        let told = if told.is_unknown() { own() } else { Some(told.clone()) };
-        let Some(crs) = told.and_then(|told| Crs::of_system(&told).ok()) else { return };
+        let stated = if stated.is_unknown() { own() } else { Some(stated.clone()) };
+        let Some(crs) = stated.and_then(|stated| Crs::of_system(&stated).ok()) else { return };
         match &self.first {
             None => self.first = Some((crs, name.to_owned())),
             Some((first, _)) if !Transform::new(first, &crs).is_identity() => {
@@ -106,7 +106,7 @@ impl Systems {
     }
 
     /// Returns a warning about layers of several systems.
-    pub(super) fn told(&self) -> Option<String> {
+    pub(super) fn warning(&self) -> Option<String> {
         let ((first, name), (other, its)) = (self.first.as_ref()?, self.other.as_ref()?);
         let shown = |crs: &Crs| match crs.code() {
             Some(code) => format!("EPSG:{code}"),

@@ -45,7 +45,7 @@ impl Job<'_> {
             layers.push(self.features(layer)?);
         }
         self.report.read_seconds += start.elapsed().as_secs_f64();
-        if let Some(message) = self.systems.told() {
+        if let Some(message) = self.systems.warning() {
             self.messages.warning(&self.names(), &message);
             self.report.warnings.push(message);
         }

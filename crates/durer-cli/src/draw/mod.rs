@@ -328,8 +328,8 @@ impl Job<'_> {
         self.report.read_seconds += start.elapsed().as_secs_f64();
         let bytes = &file.bytes[..];
         let svg = GeoFormat::of_content(bytes) == Some(GeoFormat::Svg);
-        let told = self.args.from.filter(|_| !svg);
-        let format = told.or_else(|| crate::layer::format_of(Path::new(&file.name), bytes));
+        let given = self.args.from.filter(|_| !svg);
+        let format = given.or_else(|| crate::layer::format_of(Path::new(&file.name), bytes));
         let Some(format) = format else {
             let (what, read) = (crate::layer::foreign(bytes), GeoFormat::READ);
             let message = format!("{name}: {what}; durer draw reads maps and drawings from {read}");

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use durer::paper::{Callout, PartsListRow, ViewKind};
 use durer::pipeline;
 use durer::view::projection::NamedView;
-use durer_formats::told::agreeing;
+use durer_formats::wording::agreeing;
 
 /// Number of hidden parts that a message lists.
 const NAMED: usize = 5;

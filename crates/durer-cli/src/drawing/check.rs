@@ -74,8 +74,8 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
                        disjoint, or --hatch none";
         return Err(Failure::Usage(message.to_owned()));
     }
-    let asked = args.drawing.hatch == Some(Hatch::Shade);
-    if asked && args.drawing.style == Some(DrawStyle::Wireframe) {
+    let requested = args.drawing.hatch == Some(Hatch::Shade);
+    if requested && args.drawing.style == Some(DrawStyle::Wireframe) {
         let message = "--hatch shade: a wireframe shows no areas; use --style hidden-line, regions, \
                        regions+lines or shadows";
         return Err(Failure::Usage(message.to_owned()));

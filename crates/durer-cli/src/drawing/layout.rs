@@ -94,27 +94,27 @@ fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, shown: &[Shown
 }
 
 /// Returns the warning about the scale of drawings that machines cut or that are measured, if one is due.
-pub(super) fn told_scale(
+pub(super) fn scale_warning(
     args: &RenderArgs,
     kind: Kind,
     subject: &Subject,
     laid: &LaidOut,
 ) -> Option<String> {
-    let asked = matches!(args.drawing.scale, Some(Scale::Given(_)));
+    let requested = matches!(args.drawing.scale, Some(Scale::Given(_)));
     let cuts = matches!(kind, Kind::Drawing(DrawingFormat::Dxf | DrawingFormat::Gcode));
     if !cuts || args.drawing.sheet.is_some() {
         return None;
     }
     let size = laid.sheet.size;
     let on_bed = kind != Kind::Drawing(DrawingFormat::Gcode) || args.drawing.page.is_some();
-    if !asked && !on_bed && laid.scale == 1.0 && size.max_element() > *HANDY.end() {
+    if !requested && !on_bed && laid.scale == 1.0 && size.max_element() > *HANDY.end() {
         let [width, height] = [size.x, size.y].map(|v| v.ceil());
         return Some(format!(
             "the drawing is as large as the model, {width} × {height} mm; --page, e.g. {width}x{height}, \
              sets the size of the machine's bed and fits the drawing to it"
         ));
     }
-    if !asked && laid.scale != 1.0 {
+    if !requested && laid.scale != 1.0 {
         let scale = paper::scale_text(laid.scale);
         return Some(format!("the drawing is {scale}; --scale 1:1 makes it as large as the model"));
     }

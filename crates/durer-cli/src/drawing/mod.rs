@@ -34,7 +34,7 @@ use durer::target::sheet::Sheet;
 use durer::view::components::Component;
 use durer::visibility::line::hidden_line;
 use durer_formats::drawing::{DrawingFormat, DxfStrokes, FileOptions};
-use layout::{lay_out, told_scale, unit};
+use layout::{lay_out, scale_warning, unit};
 use sheet::Shot;
 use std::time::Instant;
 
@@ -85,9 +85,9 @@ fn weighted(
 
 /// Returns the colour of the paper. Vector files stay blank unless a colour is requested.
 fn background(args: &RenderArgs, kind: Kind) -> Result<Option<[u8; 4]>, Failure> {
-    let asked = args.given.iter().any(|g| g == "background");
+    let requested = args.given.iter().any(|g| g == "background");
     match args.picture.background {
-        _ if !asked && kind.is_vector() => Ok(None),
+        _ if !requested && kind.is_vector() => Ok(None),
         Background::Color(color) if color.w == 0.0 => Ok(None),
         Background::Color(color) => Ok(Some(bytes(color))),
         _ => {
@@ -233,7 +233,7 @@ pub fn make(
             view.drawing = pipeline::hatched(std::mem::take(&mut view.drawing), spacing);
         }
     }
-    let marked = tones::asked(args).is_some();
+    let marked = tones::requested(args).is_some();
     if marked {
         let of = sources.iter().map(|(cut, options)| {
             let scene = cut.as_ref().map_or(subject.scene, |cut| &cut.0);
@@ -256,9 +256,9 @@ pub fn make(
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = shown.iter().map(|s| &s.drawing).collect();
     let features = annotated.iter().flat_map(|a| &a.features).map(FeatureReport::from).collect();
-    let told_scale = told_scale(args, kind, subject, &laid);
+    let scale_warning = scale_warning(args, kind, subject, &laid);
     let drawing = DrawingReport::new(style.name(), &all, &laid, features);
-    report.drawing = Some(DrawingReport { told_scale, ..drawing });
+    report.drawing = Some(DrawingReport { scale_warning, ..drawing });
     let drawings = shown.into_iter().map(|s| s.drawing).collect();
     Ok(Made { sheet: laid.sheet, drawings, report, unseen, start })
 }

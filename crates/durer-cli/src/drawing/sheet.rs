@@ -16,7 +16,7 @@ use durer::view::projection::NamedView;
 use durer::view::section::Section;
 use durer::work::Charge;
 use durer_formats::drawing::DrawingFormat;
-use durer_formats::told::agreeing;
+use durer_formats::wording::agreeing;
 
 /// The views of a sheet where none are named.
 const VIEWS: &[NamedView] = &[NamedView::Front, NamedView::Top, NamedView::Right, NamedView::Iso];

@@ -10,13 +10,13 @@ use durer::scene::Scene;
 use durer::target::drawing::{Drawing, Line, LineClass};
 
 /// Returns the marks for `--hatch`.
-pub fn asked(args: &RenderArgs) -> Option<Hatch> {
+pub fn requested(args: &RenderArgs) -> Option<Hatch> {
     args.drawing.hatch.filter(|hatch| matches!(hatch, Hatch::Contour | Hatch::Stipple))
 }
 
 /// Refuses marks in styles that have fills or show hidden lines.
 pub fn check(args: &RenderArgs) -> Result<(), Failure> {
-    let Some(hatch) = asked(args) else { return Ok(()) };
+    let Some(hatch) = requested(args) else { return Ok(()) };
     let style = args.drawing.style.unwrap_or_default();
     if style == DrawStyle::HiddenLine {
         return Ok(());
@@ -86,7 +86,7 @@ fn marks(
     (scene, options): Source<'_>,
     factor: f64,
 ) -> Result<Vec<Line>, Failure> {
-    let marks = match asked(args) {
+    let marks = match requested(args) {
         None => return Ok(Vec::new()),
         Some(Hatch::Stipple) => {
             let pens = args.drawing.pen.unwrap_or_default();

@@ -93,7 +93,7 @@ fn format(args: &ExplainArgs) -> Result<Format, Failure> {
         "html" | "htm" => Ok(Format::Html),
         "txt" => Ok(Format::Text),
         _ => {
-            let shown = durer_formats::told::shown_path(&args.output);
+            let shown = durer_formats::wording::shown_path(&args.output);
             Err(Failure::Usage(format!(
                 "--output {shown}: name a .svg, .png, .json, .html or .txt file, or give --format"
             )))

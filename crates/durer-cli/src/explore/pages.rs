@@ -24,7 +24,7 @@ impl Pages {
         if from.join("index.html").is_file() {
             return Ok(Self::Folder(from.into()));
         }
-        let shown = durer_formats::told::shown_path(from);
+        let shown = durer_formats::wording::shown_path(from);
         Err(Failure::Usage(format!(
             "--from {shown}: there is no index.html in it; .ci/explorer builds the pages into explorer/dist"
         )))

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn asked(request: &str) -> String {
+    fn reply_to(request: &str) -> String {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/explore");
         let mut bytes = request.as_bytes();
         let head = head(&mut bytes).expect("a head");
@@ -98,9 +98,9 @@ mod tests {
 
     #[test]
     fn files_are_read_and_nothing_else() {
-        let found = asked("GET /mod.rs?x=1 HTTP/1.1\r\nHost: localhost:80\r\n\r\n");
+        let found = reply_to("GET /mod.rs?x=1 HTTP/1.1\r\nHost: localhost:80\r\n\r\n");
         assert!(found.starts_with("HTTP/1.1 200 OK\r\n") && found.contains("durer explore"));
-        let head = asked("HEAD /mod.rs HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\n");
+        let head = reply_to("HEAD /mod.rs HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\n");
         assert!(head.starts_with("HTTP/1.1 200") && head.ends_with("\r\n\r\n"));
         for (request, status) in [
             ("GET /../lib.rs HTTP/1.1\r\nHost: localhost\r\n\r\n", "404"),
@@ -111,7 +111,7 @@ mod tests {
             ("GET /mod.rs HTTP/1.1\r\n\r\n", "403"),
             ("\r\n\r\n", "405"),
         ] {
-            assert!(asked(request).starts_with(&format!("HTTP/1.1 {status} ")), "{request}");
+            assert!(reply_to(request).starts_with(&format!("HTTP/1.1 {status} ")), "{request}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Models that are read in pieces, because they would not fit the budget.
 
-use super::{Reading, display_name, is_stream, refused, tell_ignored};
+use super::{Reading, display_name, is_stream, refused, warn_of_ignored};
 use crate::failure::Failure;
 use crate::watch;
 use durer_formats::{Facts, Pieces, ReadOptions, ply, stl};
@@ -40,7 +40,7 @@ impl InPieces {
     pub fn facts(&mut self) -> Result<Facts, Failure> {
         let facts = self.pieces.facts();
         let mut facts = facts.map_err(|e| self.failure(&e))?;
-        tell_ignored(&mut facts.model, &self.options);
+        warn_of_ignored(&mut facts.model, &self.options);
         Ok(facts)
     }
 }

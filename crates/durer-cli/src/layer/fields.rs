@@ -2,7 +2,7 @@
 
 use clap::Args;
 use durer_formats::geo::{Feature, Member};
-use durer_formats::told::agreeing;
+use durer_formats::wording::agreeing;
 use serde_json::Value;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -243,7 +243,7 @@ impl Fields {
     }
 
     /// Returns a warning at the end: fields that no feature has, and names that several fields have.
-    pub fn told(&self) -> Option<String> {
+    pub fn warning(&self) -> Option<String> {
         let doubled = self.doubled.as_ref().map(|name| {
             format!(
                 "after --rename, features have several fields {name}; programs read one of them"
@@ -340,10 +340,13 @@ mod tests {
         let mut given = feature(r#"{"a":1.50,"b":2,"c":"x"}"#);
         assert!(fields.apply(&mut given));
         assert_eq!(given.properties.as_deref(), Some(r#"{"c":"x","ä":1.50}"#));
-        assert_eq!(fields.told().as_deref(), Some("no feature has the field z; there are a, b, c"));
+        assert_eq!(
+            fields.warning().as_deref(),
+            Some("no feature has the field z; there are a, b, c")
+        );
         let rename = vec![("a".to_owned(), "b".to_owned())];
         let mut fields = Fields::new(&FieldArgs { rename, ..FieldArgs::default() });
         assert!(fields.apply(&mut feature(r#"{"a":1,"b":2}"#)));
-        assert!(fields.told().is_some_and(|told| told.contains("several fields b")));
+        assert!(fields.warning().is_some_and(|warning| warning.contains("several fields b")));
     }
 }

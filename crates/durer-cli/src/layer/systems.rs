@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
 use durer_formats::geo::{Feature, Member, Reader, System};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use std::io::Read;
 
 /// The member for the coordinate system in the older version of GeoJSON, as JSON.
@@ -12,9 +12,12 @@ pub const CRS: &str = "\"crs\"";
 
 /// Returns what is wrong if a file states its system only after its features, which have been taken to be in another
 /// one, and the option that helps.
-pub fn late<R: Read>(told: Option<&System>, reader: &Reader<R>) -> Option<(&'static str, String)> {
+pub fn late<R: Read>(
+    stated: Option<&System>,
+    reader: &Reader<R>,
+) -> Option<(&'static str, String)> {
     let last = reader.system();
-    let is_late = told.is_some_and(|told| *told != last)
+    let is_late = stated.is_some_and(|stated| *stated != last)
         && reader.members().iter().any(|member| member.name == CRS);
     is_late.then(|| {
         let code = last.code.map(|code| format!(" EPSG:{code}")).unwrap_or_default();
@@ -47,7 +50,7 @@ pub struct Shift {
     /// The system of the input that the options give.
     given: Option<Crs>,
     /// The system that the file states.
-    told: System,
+    stated: System,
     /// The transform from that system, or from the given one, if it is known.
     common: Option<Transform>,
     /// The transform for features with the number of their own system: the last number, and its transform.
@@ -65,26 +68,26 @@ impl Shift {
     pub fn new(args: &SystemArgs) -> Option<Self> {
         let to = args.to_crs.clone()?;
         let (given, system) = (args.from_crs.clone(), to.system());
-        let (told, common, own, unknown) = Default::default();
-        let mut shift = Self { to, given, told, common, own, unknown, system, lost: 0 };
+        let (stated, common, own, unknown) = Default::default();
+        let mut shift = Self { to, given, stated, common, own, unknown, system, lost: 0 };
         shift.begin(System::default());
         Some(shift)
     }
 
     /// Sets the system that the file states, when it is known: with the first feature.
-    pub fn begin(&mut self, told: System) {
-        let from = self.given.clone().map_or_else(|| Crs::of_system(&told), Ok);
+    pub fn begin(&mut self, stated: System) {
+        let from = self.given.clone().map_or_else(|| Crs::of_system(&stated), Ok);
         (self.common, self.unknown) = match from {
             Ok(from) => (Some(Transform::new(&from, &self.to)), String::new()),
             Err(why) => (None, why),
         };
-        self.told = told;
+        self.stated = stated;
     }
 
     /// Returns the transform from a feature's system.
     fn transform(&mut self, srid: Option<i32>) -> Result<&Transform, Failure> {
         // A feature may be in another system than the file.
-        let is_own = self.given.is_none() && srid.is_some() && srid != self.told.code;
+        let is_own = self.given.is_none() && srid.is_some() && srid != self.stated.code;
         if let (Some(common), false) = (&self.common, is_own) {
             return Ok(common);
         }
@@ -123,7 +126,7 @@ impl Shift {
     }
 
     /// Returns a warning at the end.
-    pub fn told(&self) -> Option<String> {
+    pub fn warning(&self) -> Option<String> {
         let (lost, system) = (self.lost, self.system.code);
         let name =
             system.map_or_else(|| "the new system".to_owned(), |code| format!("EPSG:{code}"));
@@ -134,8 +137,8 @@ impl Shift {
                 counted(lost, one, several)
             )
         });
-        let told: Vec<String> = lost.into_iter().chain(self.shifted()).collect();
-        (!told.is_empty()).then(|| told.join("; "))
+        let parts: Vec<String> = lost.into_iter().chain(self.shifted()).collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
     }
 
     /// Returns a warning about the accuracy of coordinates transformed from or to an older frame.

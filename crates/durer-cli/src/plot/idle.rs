@@ -7,7 +7,7 @@ use crate::messages::Messages;
 use durer_formats::drawing::DrawingFormat;
 
 /// Warns of options that were given without any effect.
-pub fn tell(args: &PlotArgs, kind: Kind, messages: &Messages) {
+pub fn warn(args: &PlotArgs, kind: Kind, messages: &Messages) {
     let look = &args.look;
     let rules = [
         look.no_axes.then_some(("the plot has no axes", &["labels"][..])),
@@ -16,7 +16,7 @@ pub fn tell(args: &PlotArgs, kind: Kind, messages: &Messages) {
         kind.is_vector().then_some(("a vector file has millimetres; use --page", &["size"])),
         of_file(kind),
     ];
-    idle::tell(&args.given, rules.into_iter().flatten(), messages);
+    idle::warn(&args.given, rules.into_iter().flatten(), messages);
 }
 
 /// Returns options that a format has no place for.

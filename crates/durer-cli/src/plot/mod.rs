@@ -29,7 +29,7 @@ use durer_formats::drawing::{self, DrawingFormat, FileOptions};
 use durer_formats::formula::Formula;
 use durer_formats::height_map::{self, HeightMap, HeightMapOptions};
 use durer_formats::picture::{self, PictureFormat};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use report::Report;
 use std::path::Path;
 use std::time::Instant;
@@ -112,7 +112,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     args.machine.check(kind.drawing())?;
     let target = target(args)?;
     let messages = Messages::new(&args.running, 1);
-    idle::tell(args, kind, &messages);
+    idle::warn(args, kind, &messages);
     messages.progress.stage(|| "reading".to_owned());
     let surface = Surface::read(args, &messages)?;
     let read_seconds = start.elapsed().as_secs_f64();

@@ -10,7 +10,7 @@ use durer::raster::line::wide::buffer::{self, Options};
 use durer::raster::line::wide::{Cap, Join};
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Feature, Geometry};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 
 pub const EXAMPLES: &str = "\
 Examples:

@@ -12,7 +12,7 @@ use durer::clip::polygon::Shapes;
 use durer::clip::polygon::mismatch::misfits;
 use durer::clip::polygon::validity::flaws;
 use durer_formats::geo::{GeoFormat, Geometry, Points};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -152,7 +152,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
     let none = (report.features == 0 && number > 0).then(|| none_meets(number));
-    for message in fields.told().into_iter().chain(none) {
+    for message in fields.warning().into_iter().chain(none) {
         messages.warning(&name, &message);
         report.warnings.push(message);
     }
@@ -168,7 +168,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if args.json {
         crate::report::print(&report)?;
     } else {
-        report.tell();
+        report.print();
     }
     if report.valid { Ok(()) } else { Err(Failure::Data(report.sum())) }
 }
@@ -217,7 +217,7 @@ impl Report {
     }
 
     /// Prints the faults, one per line.
-    fn tell(&self) {
+    fn print(&self) {
         for found in &self.faults {
             let [x, y] = found.at;
             let feature = match found.other {

@@ -90,7 +90,7 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
     }
     let repaired = job.report.repaired.unwrap_or(0);
     if repaired > 0 {
-        job.report.warnings.push(super::fix::told(repaired));
+        job.report.warnings.push(super::fix::repair_note(repaired));
     }
     let into_feature = |group: Group| group.into_feature(&args.files.running.work);
     let features = parallel::map(groups, into_feature).into_iter();

@@ -7,7 +7,7 @@ use durer::clip::mask::{Rules, match_points};
 use durer::clip::polygon::WindingRule;
 use durer::parallel;
 use durer_formats::geo::{Feature, Geometry};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -117,7 +117,7 @@ fn with_matched_points(features: &mut [Feature]) -> usize {
 }
 
 /// Returns the message about features that were made valid.
-pub fn told(repaired: u64) -> String {
+pub fn repair_note(repaired: u64) -> String {
     let (one, several) = ("feature is not valid; it was", "features are not valid; they were");
     format!("{} made so by the even-odd rule, as durer fix does", counted(repaired, one, several))
 }

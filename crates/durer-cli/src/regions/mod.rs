@@ -23,7 +23,7 @@ use crate::places::is_stream;
 use clap::{Args, ValueHint};
 use durer::parallel;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, System};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use serde::Serialize;
 use simplify::Simplified;
 use std::path::PathBuf;
@@ -155,10 +155,10 @@ impl<'a> Job<'a> {
         change: impl Fn(&Feature, &Geometry) -> durer::Result<(Option<Geometry>, N)> + Sync,
         mut note: impl FnMut(&mut Report, &mut Feature, u64, N),
     ) -> Result<(), Failure> {
-        let (mut writer, mut told) = (None, None);
+        let (mut writer, mut stated) = (None, None);
         loop {
             let features = self.batch(BATCH)?;
-            told.get_or_insert_with(|| self.reader.system());
+            stated.get_or_insert_with(|| self.reader.system());
             if writer.is_some() && features.is_empty() {
                 break;
             }
@@ -184,14 +184,14 @@ impl<'a> Job<'a> {
                 writer.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
             }
         }
-        self.check_system(told.as_ref())?;
+        self.check_system(stated.as_ref())?;
         self.end(writer)
     }
 
     /// Refuses a system that the file states after the features, if the output states the one before.
-    fn check_system(&self, told: Option<&System>) -> Result<(), Failure> {
-        match late(told, &self.reader) {
-            Some((why, option)) if self.to.tells_system() => {
+    fn check_system(&self, stated: Option<&System>) -> Result<(), Failure> {
+        match late(stated, &self.reader) {
+            Some((why, option)) if self.to.states_system() => {
                 Err(self
                     .fail(format!("{why}; durer clip {option} writes a file that states it first")))
             }
@@ -222,7 +222,7 @@ impl<'a> Job<'a> {
             None => self.writer()?,
         };
         let (args, messages) = (self.args, &self.messages);
-        let told = layer::finish(writer, &args.output, self.reader.members(), messages)?;
+        let lost = layer::finish(writer, &args.output, self.reader.members(), messages)?;
         let name = display_name(&args.input);
         messages.warnings(&name, self.reader.warnings());
         let own = std::mem::take(&mut self.report.warnings);
@@ -233,12 +233,12 @@ impl<'a> Job<'a> {
             "features have nothing left and are left out",
         );
         let gone = (self.gone > 0).then(|| counted(self.gone, one, several));
-        let odd = self.report.simplified.as_ref().and_then(Simplified::told);
-        let more = [self.fields.told(), none, odd, gone].into_iter().flatten();
+        let odd = self.report.simplified.as_ref().and_then(Simplified::warning);
+        let more = [self.fields.warning(), none, odd, gone].into_iter().flatten();
         let own: Vec<String> = own.into_iter().chain(more).collect();
         own.iter().for_each(|warning| messages.warning(&name, warning));
         let read = self.reader.warnings().iter().map(ToString::to_string);
-        self.report.warnings = told.into_iter().chain(read).chain(own).collect();
+        self.report.warnings = lost.into_iter().chain(read).chain(own).collect();
         drop(self.messages);
         self.report.total_seconds = self.start.elapsed().as_secs_f64();
         self.report.peak_memory_bytes = crate::report::peak_memory();

@@ -6,7 +6,7 @@ use crate::values;
 use clap::{ArgGroup, Args};
 use durer::clip::simplify::{self, Amount, Dropped, LineSimplifier};
 use durer_formats::geo::{Feature, Geometry};
-use durer_formats::told::agreeing;
+use durer_formats::wording::agreeing;
 use serde::{Serialize, Serializer};
 
 pub const EXAMPLES: &str = "\
@@ -70,7 +70,7 @@ pub struct Simplified {
 
 impl Simplified {
     /// Returns a message about faults of the input.
-    pub fn told(&self) -> Option<String> {
+    pub fn warning(&self) -> Option<String> {
         let n = self.dropped.degenerate;
         let words = "{ring of fewer than three different points, or line of fewer than two, is|rings of fewer than three different points, or lines of fewer than two, are} left out";
         (n > 0).then(|| agreeing(n, words))
@@ -81,9 +81,9 @@ impl Simplified {
 pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
     let mut job = Job::new(&args.files)?;
     let least = args.drop_below.unwrap_or(0.0);
-    let mut told = Simplified { method: args.method.name(), ..Simplified::default() };
+    let mut simplified = Simplified { method: args.method.name(), ..Simplified::default() };
     if args.each {
-        job.report.simplified = Some(told);
+        job.report.simplified = Some(simplified);
         let one = |_: &Feature, geometry: &Geometry| {
             let (mut left, mut dropped) = (geometry.clone(), Dropped::default());
             simplify(&mut [&mut left], args)?;
@@ -95,18 +95,18 @@ pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
     }
     let mut features = job.batch(usize::MAX)?;
     let mut all: Vec<_> = features.iter_mut().filter_map(|(_, f)| f.geometry.as_mut()).collect();
-    told.tolerance = Some(simplify(&mut all, args).map_err(|e| job.fail(e))?);
+    simplified.tolerance = Some(simplify(&mut all, args).map_err(|e| job.fail(e))?);
     let mut left = Vec::with_capacity(features.len());
     for (_, mut feature) in features {
         let had = feature.geometry.is_some();
-        feature.geometry = feature.geometry.and_then(|g| told.dropped.left(g, least));
+        feature.geometry = feature.geometry.and_then(|g| simplified.dropped.left(g, least));
         if had && feature.geometry.is_none() {
             job.gone += 1;
         } else {
             left.push(feature);
         }
     }
-    job.report.simplified = Some(told);
+    job.report.simplified = Some(simplified);
     job.write(left)
 }
 

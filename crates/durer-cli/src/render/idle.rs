@@ -13,14 +13,14 @@ use durer::pipeline::{DrawStyle, SurfaceMethod};
 use durer_formats::drawing::DrawingFormat;
 
 /// Warns of options that were given without any effect.
-pub fn tell(args: &RenderArgs, messages: &Messages) {
+pub fn warn(args: &RenderArgs, messages: &Messages) {
     let kind = wanted(args).kind;
     let rules = if drawing::is_wanted(args, kind) {
         [of_lines(args), of_style(args), of_file(args, kind), of_lists(args, kind)]
     } else {
         [of_algorithm(args), of_samples(args), of_shading(args), None]
     };
-    idle::tell(&args.given, rules.into_iter().flatten(), messages);
+    idle::warn(&args.given, rules.into_iter().flatten(), messages);
 }
 
 /// Returns options for areas, where a drawing has lines only.

@@ -6,7 +6,7 @@
 use super::check::{algorithm, asks_for_rays};
 use super::jobs::{Job, Picture};
 use super::scene_options::picture_options;
-use super::{RenderArgs, colored, deliver, shots, tell_model, tell_picture, usage, with_file};
+use super::{RenderArgs, colored, deliver, report_model, report_picture, shots, usage, with_file};
 use crate::camera::{self, Shot, Sights};
 use crate::drawing;
 use crate::failure::Failure;
@@ -24,13 +24,13 @@ use durer::scene::{Camera, NamedCamera, Projection, Scene, UpAxis};
 use durer::target::Framebuffer;
 use durer::view::fit;
 use durer::view::projection::{EndsOfPieces, FitOptions, FitPieces, ViewDirection};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use durer_formats::{Facts, Pieces};
 use std::time::Instant;
 
 /// Returns whether a picture needs the whole model at once.
 fn needs_whole(args: &RenderArgs) -> bool {
-    let asked = &args.picture.algorithm;
+    let requested = &args.picture.algorithm;
     let drawing = &args.drawing;
     drawing::is_wanted(args, super::wanted(args).kind)
         || drawing.callouts
@@ -41,7 +41,7 @@ fn needs_whole(args: &RenderArgs) -> bool {
         || args.picture.sides.is_open()
         || args.look.orient
         || args.look.color.is_some_and(|color| color.w < 1.0)
-        || !matches!(asked, None | Some(Algorithm::Surfaces(SurfaceMethod::ZBuffer)))
+        || !matches!(requested, None | Some(Algorithm::Surfaces(SurfaceMethod::ZBuffer)))
         || algorithm(args) != Algorithm::Surfaces(SurfaceMethod::ZBuffer)
         || !matches!(args.look.shadows, Shadows::None)
         || asks_for_rays(args).is_some()
@@ -84,7 +84,7 @@ pub fn render_model(
     job: &Job,
     pieces: InPieces,
     messages: &Messages,
-    told: &mut Growing,
+    reports: &mut Growing,
 ) -> Result<(), Failure> {
     let name = input::display_name(job.model);
     let start = Instant::now();
@@ -93,11 +93,17 @@ pub fn render_model(
     for picture in &job.pictures {
         let mut sink = Sink::File(&picture.color);
         let made = streamed.render_picture(picture, &mut sink);
-        tell_picture(&name, made.map_err(|f| with_file(&name, f))?, &mut noticed, messages, told);
+        report_picture(
+            &name,
+            made.map_err(|f| with_file(&name, f))?,
+            &mut noticed,
+            messages,
+            reports,
+        );
     }
     let mut model = streamed.facts()?.model;
-    noticed.tell(&name, &mut model, messages);
-    tell_model(job, model, start.elapsed().as_secs_f64(), told);
+    noticed.warn(&name, &mut model, messages);
+    report_model(job, model, start.elapsed().as_secs_f64(), reports);
     Ok(())
 }
 
@@ -164,7 +170,7 @@ impl Streamed<'_> {
         let args = self.args;
         let passed = self.pieces.pieces.primitives(&mut |piece| {
             let percent = 100 * done / all.max(1);
-            tell_pass(messages, name, 2, &format!("finding the visible triangles, {percent} %"));
+            report_pass(messages, name, 2, &format!("finding the visible triangles, {percent} %"));
             done += piece.meshes.iter().map(|mesh| mesh.primitive_count() as u64).sum::<u64>();
             dress(args, piece);
             survey.add(piece)
@@ -181,7 +187,7 @@ impl Streamed<'_> {
         options: &RenderOptions,
         report: &mut PictureReport,
     ) -> Result<(Framebuffer, pipeline::Status), Failure> {
-        tell_pass(self.messages, self.name, 3, "reading the visible triangles");
+        report_pass(self.messages, self.name, 3, "reading the visible triangles");
         let only = self.pieces.pieces.only(&seen.items);
         let (mut scene, _charge) = only.map_err(|e| self.pieces.failure(&e))?;
         dress(self.args, &mut scene);
@@ -203,7 +209,7 @@ impl Streamed<'_> {
 
     /// Visits all vertices, for the camera.
     fn vertices(&mut self, mut visit: impl FnMut(&Scene)) -> Result<(), Failure> {
-        tell_pass(self.messages, self.name, 1, "reading for the view");
+        report_pass(self.messages, self.name, 1, "reading for the view");
         let passed = self.pieces.pieces.vertices(&mut |piece| {
             visit(piece);
             Ok(())
@@ -213,7 +219,7 @@ impl Streamed<'_> {
 }
 
 /// Shows which pass over the file is being made.
-fn tell_pass(messages: &Messages, name: &str, number: u32, what: &str) {
+fn report_pass(messages: &Messages, name: &str, number: u32, what: &str) {
     messages.progress.stage(|| format!("{name}: pass {number} of 3, {what}"));
 }
 

@@ -4,7 +4,7 @@ use durer::annotate::Feature;
 use durer::math::DVec3;
 use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use serde::Serialize;
 
 /// Number of borders below which they are taken for the edges of sheets.
@@ -36,7 +36,7 @@ pub struct DrawingReport {
     pub features: Vec<FeatureReport>,
     /// Warning about the scale.
     #[serde(skip)]
-    pub told_scale: Option<String>,
+    pub scale_warning: Option<String>,
 }
 
 /// The lines of one class.
@@ -122,7 +122,7 @@ impl DrawingReport {
             border_edges: edges.borders,
             lines: LineClass::ALL.iter().filter_map(class).collect(),
             features,
-            told_scale: None,
+            scale_warning: None,
         }
     }
 

@@ -4,7 +4,7 @@
 
 use super::{Failed, ModelReport, PictureReport, peak_memory};
 use crate::failure::Failure;
-use durer_formats::told;
+use durer_formats::wording;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -46,7 +46,7 @@ impl Growing {
         if self.wanted {
             let between = if self.models.len() > self.done { "," } else { "" };
             let line = serde_json::to_string(picture).unwrap_or_default();
-            self.models.extend([between, "\n        ", &*told::json(&line)]);
+            self.models.extend([between, "\n        ", &*wording::json(&line)]);
         }
     }
 
@@ -108,7 +108,7 @@ fn closing(pictures: bool) -> &'static str {
 /// Returns the members of an object, a line each, with an indent in front of each.
 fn members(object: &impl Serialize, indent: &str) -> String {
     let text = serde_json::to_string_pretty(object).unwrap_or_default();
-    let text = told::json(&text);
+    let text = wording::json(&text);
     let inner = text.strip_prefix("{\n  ").and_then(|text| text.strip_suffix("\n}"));
     // No string of JSON has a line break in it.
     let deeper = inner.unwrap_or_default().replace("\n  ", &format!("\n{indent}"));

@@ -3,7 +3,7 @@
 use super::PictureReport;
 use crate::encoding::FLATTENED;
 use crate::messages::Messages;
-use durer_formats::told::agreeing;
+use durer_formats::wording::agreeing;
 use durer_formats::{Model, Place};
 
 /// The notes on all pictures of a model.
@@ -35,27 +35,27 @@ impl Noticed {
         }
         if let Some(drawing) = &picture.drawing {
             self.loose_faces = self.loose_faces.take().or_else(|| drawing.loose_faces());
-            self.scale = self.scale.take().or_else(|| drawing.told_scale.clone());
+            self.scale = self.scale.take().or_else(|| drawing.scale_warning.clone());
         }
         self.flattened |= picture.flattened;
     }
 
     /// Adds warnings to the model, and prints them.
-    pub fn tell(self, name: &str, model: &mut Model, messages: &Messages) {
+    pub fn warn(self, name: &str, model: &mut Model, messages: &Messages) {
         let words = "{triangle|triangles} with a coordinate that is not finite {is|are} left out";
         let non_finite = (self.non_finite > 0).then(|| agreeing(self.non_finite, words));
         let flattened = format!("{FLATTENED}; --background gives it another colour");
-        tell(name, model, messages, non_finite);
+        warn(name, model, messages, non_finite);
         if let Some(why) = self.unseen {
             model.warn(Place::Whole, why);
         }
-        tell(name, model, messages, self.notes);
-        tell(name, model, messages, self.loose_faces.into_iter().chain(self.scale));
-        tell(name, model, messages, self.flattened.then_some(flattened));
+        warn(name, model, messages, self.notes);
+        warn(name, model, messages, self.loose_faces.into_iter().chain(self.scale));
+        warn(name, model, messages, self.flattened.then_some(flattened));
     }
 }
 
-fn tell(
+fn warn(
     name: &str,
     model: &mut Model,
     messages: &Messages,

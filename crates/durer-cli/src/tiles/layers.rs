@@ -13,7 +13,7 @@ use durer::parallel;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Feature, GeoFormat, System};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use durer_formats::{Place, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -67,7 +67,7 @@ impl Found {
         self.count += u64::from(found);
     }
 
-    fn told(&self, one: &str, several: &str) -> Option<String> {
+    fn warning(&self, one: &str, several: &str) -> Option<String> {
         let Self { count, first } = self;
         match count {
             0 => None,
@@ -109,9 +109,9 @@ pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
             read_file(&mut all, path, &part, &mut fields, (args, messages))?;
         }
     }
-    if let Some(message) = fields.told() {
+    if let Some(message) = fields.warning() {
         let names: Vec<String> = args.inputs.iter().map(|path| display_name(path)).collect();
-        tell(message, &names.join(", "), messages, &mut all.warnings);
+        warn(message, &names.join(", "), messages, &mut all.warnings);
     }
     Ok(all)
 }
@@ -204,33 +204,34 @@ fn read_file(
         }
         messages.progress.stage(|| format!("{} features", all.read));
     }
-    let stated = placing.told.as_ref().filter(|_| placing.shift.is_some() && !placing.is_given);
+    let stated = placing.stated.as_ref().filter(|_| placing.shift.is_some() && !placing.is_given);
     if let Some((why, option)) = late(stated, &reader) {
         return Err(Failure::Data(format!("{shown}: {why}; {option} sets their system")));
     }
-    let mut told = reader.warnings().to_vec();
+    let mut warnings = reader.warnings().to_vec();
     if layers.len() > 1 {
         // The hint at --layer is for other commands.
         let note = format!(
             "its {} layers become one; read from a file, each becomes a layer",
             layers.len()
         );
-        told.iter_mut()
+        warnings
+            .iter_mut()
             .filter(|warning| reader.is_note(warning))
             .for_each(|w| w.message.clone_from(&note));
     }
-    let lost = placing.shift.as_ref().and_then(Shift::told);
-    told.extend(lost.map(|message| Warning { place: Place::Whole, message }));
-    messages.warnings(&shown, &told);
+    let lost = placing.shift.as_ref().and_then(Shift::warning);
+    warnings.extend(lost.map(|message| Warning { place: Place::Whole, message }));
+    messages.warnings(&shown, &warnings);
     all.skipped += reader.skipped();
-    all.warnings.extend(told.iter().map(|warning| format!("{shown}: {warning}")));
+    all.warnings.extend(warnings.iter().map(|warning| format!("{shown}: {warning}")));
     let none = match (all.read == before, kept) {
         (true, _) => Some("there is no feature in it".to_owned()),
         (false, 0) => Some(none_meets(all.read - before)),
         _ => None,
     };
     for message in none.into_iter().chain(doubts.messages()) {
-        tell(message, &shown, messages, &mut all.warnings);
+        warn(message, &shown, messages, &mut all.warnings);
     }
     Ok(())
 }
@@ -241,7 +242,7 @@ struct Placing {
     /// The conversion to longitudes and latitudes, unless an option says what the coordinates are.
     shift: Option<Shift>,
     /// The system that the file states, from the first feature on.
-    told: Option<System>,
+    stated: Option<System>,
     /// True if --from-crs gives the system of all features.
     is_given: bool,
 }
@@ -259,7 +260,7 @@ impl Placing {
         let systems = SystemArgs { from_crs, to_crs: lonlat };
         let shift = Shift::new(&systems).filter(|_| direct.is_none());
         let coordinates = direct.unwrap_or(TileCoordinates::Lonlat).into();
-        Self { coordinates, shift, told: None, is_given }
+        Self { coordinates, shift, stated: None, is_given }
     }
 
     /// Converts a feature to longitudes and latitudes if its file or itself states another system.
@@ -278,21 +279,22 @@ impl Placing {
             }
             return Ok(());
         }
-        let told = self.told.get_or_insert_with(|| {
-            let told = system();
-            shift.begin(told.clone());
-            if told.code == Some(MERCATOR) {
+        let stated = self.stated.get_or_insert_with(|| {
+            let stated = system();
+            shift.begin(stated.clone());
+            if stated.code == Some(MERCATOR) {
                 self.coordinates = tiles::Coordinates::Mercator;
             }
-            told
+            stated
         });
-        let is_other = feature.srid.is_some() && feature.srid != told.code;
-        let is_direct = *told == System::LONLAT || told.code == Some(MERCATOR) || told.is_unknown();
+        let is_other = feature.srid.is_some() && feature.srid != stated.code;
+        let is_direct =
+            *stated == System::LONLAT || stated.code == Some(MERCATOR) || stated.is_unknown();
         if is_direct && !is_other {
             return Ok(());
         }
         let own = if is_other { feature.srid.map(System::of_code) } else { None };
-        Crs::of_system(own.as_ref().unwrap_or(told))?;
+        Crs::of_system(own.as_ref().unwrap_or(stated))?;
         if is_other && self.coordinates == tiles::Coordinates::Mercator {
             return Err("its features are in several coordinate systems".to_owned());
         }
@@ -307,7 +309,7 @@ impl Placing {
 const MERCATOR: i32 = 3857;
 
 /// Prints a warning now and adds it to the report.
-fn tell(message: String, name: &str, messages: &Messages, warnings: &mut Vec<String>) {
+fn warn(message: String, name: &str, messages: &Messages, warnings: &mut Vec<String>) {
     messages.warning(name, &message);
     warnings.push(format!("{name}: {message}"));
 }
@@ -353,27 +355,27 @@ fn stems(inputs: &[PathBuf]) -> Vec<String> {
 impl Doubts {
     fn messages(&self) -> Vec<String> {
         let found = [
-            self.far.told(
+            self.far.warning(
                 "lies more than four worlds beyond 180 degrees; left out",
                 "lie more than four worlds beyond 180 degrees; left out",
             ),
-            self.latitudes.told(
+            self.latitudes.warning(
                 "has latitudes beyond 90 degrees; are longitude and latitude in the wrong order, or --coordinates?",
                 "have latitudes beyond 90 degrees; are longitude and latitude in the wrong order, or --coordinates?",
             ),
-            self.poles.told(
+            self.poles.warning(
                 "goes around a pole; it is closed along it",
                 "go around a pole; they are closed along it",
             ),
-            self.long.told(
+            self.long.warning(
                 "has an edge of more than 180 degrees, which goes around the world; --short-way lets it cross the date line",
                 "have edges of more than 180 degrees, which go around the world; --short-way lets them cross the date line",
             ),
-            self.ids.told(
+            self.ids.warning(
                 "has an id that is not a whole number; vector tiles know no others, left out",
                 "have ids that are not whole numbers; vector tiles know no others, left out",
             ),
-            self.no_geometry.told("has no geometry; left out", "have no geometry; left out"),
+            self.no_geometry.warning("has no geometry; left out", "have no geometry; left out"),
         ];
         found.into_iter().flatten().collect()
     }

@@ -15,7 +15,7 @@ use crate::messages::Messages;
 use durer::clip::tiles::{Pyramid, Tile, extent};
 use durer::work::Work;
 use durer_formats::tiles::Metadata;
-use durer_formats::told::counted;
+use durer_formats::wording::counted;
 use layers::Layers;
 use levels::Chosen;
 use make::Maker;
@@ -126,7 +126,9 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     let (tiles, bytes) = levels.iter().fold((0, 0), |(t, b), l| (t + l.tiles, b + l.bytes));
     let lost = maker.lost();
     let mut warnings = std::mem::take(&mut all.warnings);
-    for message in told(*zooms.end(), lost, tiles).into_iter().filter(|_| ended.is_ok()) {
+    for message in
+        warnings_of_result(*zooms.end(), lost, tiles).into_iter().filter(|_| ended.is_ok())
+    {
         messages.warning(&args.output.display().to_string(), &message);
         warnings.push(message);
     }
@@ -170,18 +172,18 @@ pub fn too_many(count: u64, limit: u64) -> Result<(), Failure> {
     )))
 }
 
-fn told(last: u8, lost: u64, tiles: u64) -> Vec<String> {
-    let mut told = Vec::new();
+fn warnings_of_result(last: u8, lost: u64, tiles: u64) -> Vec<String> {
+    let mut found = Vec::new();
     if lost > 0 {
-        told.push(format!(
+        found.push(format!(
             "{} beyond the latitudes of Web Mercator, ±85.0511, or too small for the grid of level {last}",
             counted(lost, "feature is in no tile: it is", "features are in no tile: they are")
         ));
     }
     if tiles == 0 {
-        told.push("there is no tile".to_owned());
+        found.push("there is no tile".to_owned());
     }
-    told
+    found
 }
 
 /// Makes and writes all tiles of a level.

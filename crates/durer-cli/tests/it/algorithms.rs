@@ -150,7 +150,7 @@ fn algorithms_are_classified_from_their_facts() {
     let folder = Folder::new();
     let names = |arguments: &str| -> Vec<String> {
         let list = folder.must(&format!("algorithms --json {arguments}")).json();
-        let name = |told: &serde_json::Value| told["name"].as_str().unwrap().to_owned();
+        let name = |printed: &serde_json::Value| printed["name"].as_str().unwrap().to_owned();
         list.as_array().unwrap().iter().map(name).collect()
     };
     let all = names("");

@@ -96,7 +96,7 @@ fn a_file_names_features_views_and_threads() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn what_is_wrong_is_reported() {
     let folder = folder();
     fs::write(folder.path("k.toml"), "[[dimension]]\nkind = 'lineal'\n").unwrap();
     fs::write(
@@ -160,7 +160,7 @@ fn broken_views_keep_true_lengths() {
 }
 
 #[test]
-fn breaks_that_cannot_be_shown_are_told() {
+fn breaks_that_cannot_be_shown_are_reported() {
     let folder = Folder::new();
     folder.write("bar.obj", BAR);
     for (options, part) in [
@@ -174,10 +174,10 @@ fn breaks_that_cannot_be_shown_are_told() {
         let ended = folder.run(&format!("render bar.obj {options}"));
         assert!(ended.code == 2 && ended.err.contains(part), "{options}: {}", ended.err);
     }
-    let told = folder.must("render bar.obj -o b.svg --break x:50,250 --view right").err;
-    assert!(told.contains("no view shows x in its true length"), "{told}");
-    let told = folder.must("render bar.obj -o b.svg --break x:50,250 --view top").err;
-    assert!(!told.contains("no view"), "{told}");
+    let printed = folder.must("render bar.obj -o b.svg --break x:50,250 --view right").err;
+    assert!(printed.contains("no view shows x in its true length"), "{printed}");
+    let printed = folder.must("render bar.obj -o b.svg --break x:50,250 --view top").err;
+    assert!(!printed.contains("no view"), "{printed}");
 }
 
 #[test]

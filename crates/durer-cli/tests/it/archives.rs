@@ -42,8 +42,12 @@ fn map_data_in_archives_are_read_with_the_files_beside_them() {
     folder.must(plain);
     assert_eq!(folder.read("o.geojson"), folder.read("p.geojson"));
     assert!(String::from_utf8_lossy(&folder.read("o.geojson")).contains("Ä"), "fields are read");
-    let told = folder.must("info shp.zip --json").json();
-    assert_eq!((&told["format"], &told["features"]), (&"shapefile".into(), &1.into()), "{told}");
+    let printed = folder.must("info shp.zip --json").json();
+    assert_eq!(
+        (&printed["format"], &printed["features"]),
+        (&"shapefile".into(), &1.into()),
+        "{printed}"
+    );
     folder.must("draw shp.zip --label n -o o.png --size 64x64");
     folder.must("draw a.shp --label n -o p.png --size 64x64");
     assert_eq!(folder.read("o.png"), folder.read("p.png"));
@@ -59,13 +63,17 @@ fn map_data_in_archives_are_read_with_the_files_beside_them() {
     assert_eq!(folder.read("o.wkt"), b"SRID=4326;POINT (7.44 46.95)\n");
     folder.run("draw two.zip -o o.png").fails(1, several);
     folder.run("draw two.zip -o o.png").fails(1, "unpack it, or name one with --layer");
-    let told = folder.must("draw two.zip --layer b two.zip --layer a -o o.png --json").json();
-    let format = |i: usize| told["layers"][i]["format"].clone();
-    assert_eq!((format(0), format(1)), ("kml".into(), "shapefile".into()), "{told}");
-    let told = folder.must("info two.zip --json").json();
-    assert_eq!((&told[0]["name"], &told[1]["name"]), (&"b.kml".into(), &"a.shp".into()), "{told}");
-    let told = folder.must("info two.zip --layer b --json").json();
-    assert_eq!((&told["format"], &told["features"]), (&"kml".into(), &1.into()));
+    let printed = folder.must("draw two.zip --layer b two.zip --layer a -o o.png --json").json();
+    let format = |i: usize| printed["layers"][i]["format"].clone();
+    assert_eq!((format(0), format(1)), ("kml".into(), "shapefile".into()), "{printed}");
+    let printed = folder.must("info two.zip --json").json();
+    assert_eq!(
+        (&printed[0]["name"], &printed[1]["name"]),
+        (&"b.kml".into(), &"a.shp".into()),
+        "{printed}"
+    );
+    let printed = folder.must("info two.zip --layer b --json").json();
+    assert_eq!((&printed["format"], &printed["features"]), (&"kml".into(), &1.into()));
     pack(&folder, "none.zip", &[("a.txt", b"")]);
     folder
         .run("clip none.zip --window 0,0,9,9 -o o.wkt")
@@ -104,8 +112,8 @@ fn layers_of_files_in_archives_are_chosen_and_become_layers_of_tiles() {
         folder.must(&format!("clip two.zip --layer {choice} {clip}"));
         assert_eq!(folder.read("o.wkt"), b"POINT (1 2)\n", "{choice}");
         folder.must(&format!("draw two.zip --layer {choice} -o o.png --size 9x9"));
-        let told = folder.must(&format!("info two.zip --layer {choice} --json")).json();
-        assert_eq!(told["features"], 1, "{choice}");
+        let printed = folder.must(&format!("info two.zip --layer {choice} --json")).json();
+        assert_eq!(printed["features"], 1, "{choice}");
     }
     for command in ["fix", "check", "buffer --distance 1", "dissolve"] {
         let out = if command == "check" { "" } else { "-o o.geojson" };
@@ -127,12 +135,12 @@ fn models_in_archives_are_read_with_the_files_beside_them() {
     folder.write("a.mtl", mtl);
     let read = ("README.TXT", &b"1 2 3"[..]);
     pack(&folder, "a.zip", &[read, ("x/a.obj", obj.as_bytes()), ("x/a.mtl", mtl.as_bytes())]);
-    let told = folder.must("render a.zip -o o.png --size 32x32");
-    assert_eq!(told.err, "");
+    let printed = folder.must("render a.zip -o o.png --size 32x32");
+    assert_eq!(printed.err, "");
     folder.must("render a.obj -o p.png --size 32x32");
     assert_eq!(folder.read("o.png"), folder.read("p.png"));
-    let told = folder.must("info a.zip --json").json();
-    assert_eq!((&told["format"], &told["triangles"]), (&"OBJ".into(), &1.into()));
+    let printed = folder.must("info a.zip --json").json();
+    assert_eq!((&printed["format"], &printed["triangles"]), (&"OBJ".into(), &1.into()));
 
     pack(&folder, "two.zip", &[("a.obj", obj.as_bytes()), ("b.stl", b"solid b\nendsolid b\n")]);
     folder.run("render two.zip -o o.png").fails(1, "a ZIP archive with 2 models (a.obj, b.stl)");

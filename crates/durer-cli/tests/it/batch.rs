@@ -371,12 +371,12 @@ fn tables_of_spreadsheets_and_python_are_read() {
         assert_eq!(folder.read("out/a.png"), folder.read("grid.png"), "{table}");
         assert_eq!(folder.read("out/b.png"), folder.read("plain.png"), "{table}");
     }
-    for (table, told) in [
+    for (table, printed) in [
         ("ID;input\na;cube.obj\n", "there is no column `id` among ID, input"),
         ("[{\"id\":\"a\"}]", "it is an array of JSON; write each of its objects on a line"),
     ] {
         folder.write("rows.csv", table);
-        batch(&folder, "").fails(1, told);
+        batch(&folder, "").fails(1, printed);
     }
     fs::create_dir(folder.path("tables")).unwrap();
     fs::copy(folder.path("cube.obj"), folder.path("tables/own.obj")).unwrap();

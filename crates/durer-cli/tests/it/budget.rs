@@ -205,9 +205,9 @@ fn models_one_after_another_share_a_budget() {
 #[test]
 fn time_ends_what_looks_at_it() {
     let folder = Folder::with_models();
-    let told = "cube.obj: it takes longer than the 0.05 s that --timeout allows";
+    let printed = "cube.obj: it takes longer than the 0.05 s that --timeout allows";
     let command = "render cube.obj -o o.png --size 9000x9000 --aa 16 --timeout 0.05";
-    folder.run(command).fails(1, told);
+    folder.run(command).fails(1, printed);
     assert_eq!(folder.names(), ["broken.obj", "cube.obj"]);
     folder.must("render cube.obj -o o.png --size 20x20 --timeout 600");
 }
@@ -223,9 +223,12 @@ fn time_ends_what_waits() {
     let mut input = child.stdin.take().unwrap();
     input.write_all(b"{\"type\":").unwrap();
     let output = child.wait_with_output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{told}");
-    assert!(told.contains("standard input") && told.contains("--timeout allows"), "{told}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{printed}");
+    assert!(
+        printed.contains("standard input") && printed.contains("--timeout allows"),
+        "{printed}"
+    );
     assert!(start.elapsed() > Duration::from_secs(1) && folder.names().is_empty());
     drop(input);
 }

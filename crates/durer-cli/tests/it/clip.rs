@@ -345,14 +345,14 @@ fn a_feature_that_cannot_be_cut_is_named_by_its_number() {
 }
 
 #[test]
-fn what_joining_leaves_out_is_told() {
+fn what_joining_leaves_out_is_reported() {
     let folder = Folder::new();
     folder
         .write("a.wkt", "POLYGON((0 0,1 0,1 1,0 0))\nLINESTRING(0 0,1 1)\nPOINT(0 0)\nPOINT(1 0)");
-    let told = "left out: 1 line and 2 points";
+    let printed = "left out: 1 line and 2 points";
     for (op, names) in [("union", true), ("xor", true), ("intersection", false)] {
         let line = format!("clip a.wkt --op {op} --window -9,-9,9,9 -o o.wkt");
-        assert_eq!(folder.must(&line).err.contains(told), names, "{op}");
+        assert_eq!(folder.must(&line).err.contains(printed), names, "{op}");
         let report = folder.must(&format!("{line} --json -q")).json();
         assert_eq!(report["warnings"].as_array().map(Vec::len), Some(usize::from(names)), "{op}");
     }
@@ -422,7 +422,7 @@ fn tiles_are_files_or_a_sequence() {
 }
 
 #[test]
-fn wrong_use_and_bad_data_are_told() {
+fn wrong_use_and_bad_data_are_reported() {
     let folder = folder();
     folder.write("bad.geojsonl", "{\"type\":\"Point\",\"coordinates\":[1,1]}\n{\"type\":\"Point\",\"coordinates\":[1,oops]}\n");
     folder.write("old.geojsonl", "old");

@@ -51,7 +51,7 @@ fn pieces_know_their_cells_and_are_a_coverage() {
     assert!((area("in") - area("out")).abs() < 1e-10, "{report}");
     assert_eq!((&report["snapped"], &report["repaired"]), (&json!(0), &json!(0)));
     let found = features(&folder, "out.geojsonl");
-    let told: Vec<&Value> = found.iter().map(|feature| &feature["properties"]).collect();
+    let printed: Vec<&Value> = found.iter().map(|feature| &feature["properties"]).collect();
     let named =
         |name: &str, cell: &str, row: u64| json!({"name": name, "cell_name": cell, "row": row});
     let mut expected = vec![named("many", "A", 1), named("many", "B", 1), named("many", "C", 2)];
@@ -59,7 +59,7 @@ fn pieces_know_their_cells_and_are_a_coverage() {
     expected.extend([named("few", "B", 1), named("few", "C", 2)]);
     expected.extend([named("way", "A", 1), named("way", "B", 1), named("way", "C", 2)]);
     expected.push(named("trees", "A", 1));
-    assert_eq!(told, expected.iter().collect::<Vec<_>>());
+    assert_eq!(printed, expected.iter().collect::<Vec<_>>());
     folder.must("check out.geojsonl --coverage");
     // The square with many vertices is cut in the opposite direction from the one with few.
     let ring = |k: usize| found[k]["geometry"]["coordinates"][0].as_array().unwrap().clone();
@@ -102,16 +102,16 @@ fn cells_are_of_polygons_and_go_with_no_other_mask() {
         .fails(1, "there is no polygon to cut with");
     folder.run("clip - --cells - -o out.geojsonl").fails(2, "`-` is given twice");
     folder.write("bow.wkt", "POLYGON ((0 0, 4 4, 4 0, 0 4, 0 0))\nPOINT (1 1)");
-    let told = folder.must("clip in.geojsonl --cells bow.wkt -o out.geojsonl").err;
-    assert!(told.contains("made valid by the even-odd rule"), "{told}");
-    assert!(told.contains("1 feature encloses nothing and is no cell"), "{told}");
+    let printed = folder.must("clip in.geojsonl --cells bow.wkt -o out.geojsonl").err;
+    assert!(printed.contains("made valid by the even-odd rule"), "{printed}");
+    assert!(printed.contains("1 feature encloses nothing and is no cell"), "{printed}");
 }
 
 #[test]
-fn cells_in_another_system_are_told() {
+fn cells_in_another_system_are_reported() {
     let folder = Folder::new();
     folder.write("a.wkt", "SRID=4326;POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\n");
     folder.write("cells.wkt", "SRID=3857;POLYGON ((1 1, 3 1, 3 3, 1 3, 1 1))\n");
-    let told = folder.must("clip a.wkt --cells cells.wkt -o o.wkt").err;
-    assert!(told.contains("3857") && told.contains("4326"), "{told}");
+    let printed = folder.must("clip a.wkt --cells cells.wkt -o o.wkt").err;
+    assert!(printed.contains("3857") && printed.contains("4326"), "{printed}");
 }

@@ -18,7 +18,7 @@ fn folder() -> Folder {
 }
 
 /// Returns a command's standard output.
-fn said(folder: &Folder, line: &str) -> String {
+fn output_of(folder: &Folder, line: &str) -> String {
     String::from_utf8(folder.must(line).out).expect("text")
 }
 
@@ -56,10 +56,10 @@ fn compressed_files_are_read_as_they_are() {
     write("places.csv.gz", PLACES);
     folder.must("clip places.csv.gz --window 7,46,8,48 -o o.wkt");
     assert_eq!(text(&folder, "o.wkt"), "POINT (7.44 46.95)\nPOINT (7.59 47.56)\n");
-    assert!(said(&folder, "info places.csv.gz").contains("3 Point"));
+    assert!(output_of(&folder, "info places.csv.gz").contains("3 Point"));
     folder.must("draw places.csv.gz --label name -o o.png");
     write("one.obj.gz", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    assert!(said(&folder, "info one.obj.gz").contains("triangles   1"));
+    assert!(output_of(&folder, "info one.obj.gz").contains("triangles   1"));
     folder.must("render one.obj.gz -o o.png --size 16x16");
     write("long.obj.gz", &"v 0 0 0\n".repeat(1000));
     folder
@@ -77,7 +77,7 @@ fn features_with_a_property_of_gltf_are_map_data() {
         "pumps.geojson",
         r#"{"type":"Feature","properties":{"asset":"pump"},"geometry":{"type":"Point","coordinates":[1,2]}}"#,
     );
-    assert!(said(&folder, "info pumps.geojson").contains("1 Point"));
+    assert!(output_of(&folder, "info pumps.geojson").contains("1 Point"));
     folder.must("draw pumps.geojson -o o.png");
 }
 
@@ -137,7 +137,7 @@ fn coordinates_are_brought_to_another_system() {
     let there = text(&folder, "areas.geojson");
     assert!(!back.contains("crs") && numbers[0].abs() <= 180.0, "{there} {back}");
     folder.must("clip areas.geojson --to-crs EPSG:3857 -o o.fgb");
-    assert!(said(&folder, "info o.fgb").contains("EPSG:3857"));
+    assert!(output_of(&folder, "info o.fgb").contains("EPSG:3857"));
     folder
         .run("clip places.csv --to-crs EPSG:3857 -o o.fgb")
         .fails(2, "--from-crs sets the system");
@@ -151,25 +151,25 @@ fn coordinates_are_brought_to_another_system() {
 #[test]
 fn info_tells_fields_extent_system_and_validity() {
     let folder = folder();
-    let told = folder.must("info areas.geojson --json").json();
-    assert_eq!(told["features"], 3);
-    assert_eq!(told["geometries"]["Polygon"], 3);
-    assert_eq!(told["extent"], serde_json::json!([8.0, 47.0, 10.0, 48.0]));
-    assert_eq!(told["crs"]["code"], "EPSG:4326");
-    assert_eq!((&told["invalid"], &told["first_invalid"]), (&1.into(), &3.into()));
-    assert_eq!(told["fields"][0]["name"], "use");
+    let printed = folder.must("info areas.geojson --json").json();
+    assert_eq!(printed["features"], 3);
+    assert_eq!(printed["geometries"]["Polygon"], 3);
+    assert_eq!(printed["extent"], serde_json::json!([8.0, 47.0, 10.0, 48.0]));
+    assert_eq!(printed["crs"]["code"], "EPSG:4326");
+    assert_eq!((&printed["invalid"], &printed["first_invalid"]), (&1.into(), &3.into()));
+    assert_eq!(printed["fields"][0]["name"], "use");
     assert_eq!(
-        (&told["fields"][0]["kind"], &told["fields"][0]["filled"]),
+        (&printed["fields"][0]["kind"], &printed["fields"][0]["filled"]),
         (&"text".into(), &2.into())
     );
-    assert_eq!(told["fields"][1]["examples"], serde_json::json!([2.5, 10, 1]));
-    let text = said(&folder, "info areas.geojson places.csv");
+    assert_eq!(printed["fields"][1]["examples"], serde_json::json!([2.5, 10, 1]));
+    let text = output_of(&folder, "info areas.geojson places.csv");
     assert!(text.contains("use [text, 2 filled] \"Forest\", \"field\""), "{text}");
     assert!(text.contains("people [integer] 134000, 178000, 709000"), "{text}");
     folder.write("cube.obj", crate::harness::CUBE);
-    assert!(said(&folder, "info cube.obj").contains("triangles   12"));
+    assert!(output_of(&folder, "info cube.obj").contains("triangles   12"));
     folder.write("cloud.csv", "x,y,z\n1,2,3\n");
-    assert!(said(&folder, "info cloud.csv").contains("points"), "points of a model");
+    assert!(output_of(&folder, "info cloud.csv").contains("points"), "points of a model");
 }
 
 /// Two layers, a table without geometries, a view and tiles.
@@ -179,15 +179,18 @@ const LAYERS: &[u8] = include_bytes!("../../../../fuzz/seeds/geopackage/plain.gp
 fn geopackages_are_read_by_layer_and_written_with_their_system() {
     let folder = folder();
     folder.write("map.gpkg", LAYERS);
-    let told = folder.must("info map.gpkg --json").json();
-    let of = |i: usize, key: &str| told[i][key].clone();
+    let printed = folder.must("info map.gpkg --json").json();
+    let of = |i: usize, key: &str| printed[i][key].clone();
     assert_eq!((of(0, "name"), of(1, "name")), ("Städte".into(), "lines".into()));
     assert_eq!((of(0, "features"), of(1, "features")), (3.into(), 7.into()));
-    assert_eq!(told[0]["crs"]["code"], "EPSG:4326");
-    assert_eq!(told[1]["crs"]["code"], "EPSG:32632");
-    assert_eq!(told[0]["fields"][3]["kind"], "boolean");
-    assert!(told[0]["warnings"][0].as_str().is_some_and(|w| w.contains("it is a view")), "{told}");
-    assert!(said(&folder, "info map.gpkg").contains("map.gpkg, layer lines\n"));
+    assert_eq!(printed[0]["crs"]["code"], "EPSG:4326");
+    assert_eq!(printed[1]["crs"]["code"], "EPSG:32632");
+    assert_eq!(printed[0]["fields"][3]["kind"], "boolean");
+    assert!(
+        printed[0]["warnings"][0].as_str().is_some_and(|w| w.contains("it is a view")),
+        "{printed}"
+    );
+    assert!(output_of(&folder, "info map.gpkg").contains("map.gpkg, layer lines\n"));
     folder
         .run("clip map.gpkg -o o.geojson")
         .fails(1, "different coordinate systems; --layer names one of Städte (EPSG:4326), lines");
@@ -199,9 +202,9 @@ fn geopackages_are_read_by_layer_and_written_with_their_system() {
         .run("clip map.gpkg --layer lines -o o.wkt")
         .fails(1, "map.gpkg-wal beside it holds changes");
     folder.must("clip areas.geojson --to-crs EPSG:3857 -o new.gpkg");
-    let told = folder.must("info new.gpkg --json").json();
-    assert_eq!((&told["crs"]["code"], &told["features"]), (&"EPSG:3857".into(), &3.into()));
-    assert_eq!(told["fields"][1]["examples"], serde_json::json!([2.5, 10, 1]));
+    let printed = folder.must("info new.gpkg --json").json();
+    assert_eq!((&printed["crs"]["code"], &printed["features"]), (&"EPSG:3857".into(), &3.into()));
+    assert_eq!(printed["fields"][1]["examples"], serde_json::json!([2.5, 10, 1]));
     let piped = folder.must("clip areas.geojson --to geopackage -o -").out;
     assert!(piped.starts_with(b"SQLite format 3\0"));
     folder.write("piped.gpkg", piped);
@@ -215,8 +218,11 @@ fn older_datums_are_shifted_with_a_word_or_refused() {
     let ended = folder.must("clip os.wkt --from-crs EPSG:27700 --to-crs EPSG:4326 -o o.csv");
     assert!(ended.err.contains("with OSGB_1936 they may be off by 5 m"), "{}", ended.err);
     // −2.5, 53.5 after the way back, which is accurate to a centimetre.
-    let told = text(&folder, "o.csv");
-    assert!(told.contains("POINT (-2.49999998") && told.contains(" 53.49999999"), "{told}");
+    let printed = text(&folder, "o.csv");
+    assert!(
+        printed.contains("POINT (-2.49999998") && printed.contains(" 53.49999999"),
+        "{printed}"
+    );
     folder
         .run("clip os.wkt --from-crs EPSG:21781 --to-crs EPSG:4326 -o o.csv")
         .fails(2, "is on the datum CH1903, and its shift to WGS 84 is not known here");
@@ -226,9 +232,9 @@ fn older_datums_are_shifted_with_a_word_or_refused() {
 fn foreign_formats_are_named() {
     let folder = folder();
     folder.write("a.gpkg", b"SQLite format 3\0");
-    let told = "a.gpkg: this is an SQLite database that is not a GeoPackage, such as MBTiles or SpatiaLite; export it as GeoJSON";
-    folder.run("clip a.gpkg --window 0,0,1,1 -o o.geojson").fails(1, told);
-    folder.run("draw a.gpkg -o o.png").fails(1, told);
+    let printed = "a.gpkg: this is an SQLite database that is not a GeoPackage, such as MBTiles or SpatiaLite; export it as GeoJSON";
+    folder.run("clip a.gpkg --window 0,0,1,1 -o o.geojson").fails(1, printed);
+    folder.run("draw a.gpkg -o o.png").fails(1, printed);
     folder.write("a.geojson", b"PK\x03\x04");
     folder.run("clip a.geojson --window 0,0,1,1 -o o.wkt").fails(1, "the ZIP archive is broken");
 }
@@ -278,12 +284,12 @@ fn systems_that_geojson_states_are_converted_from() {
     folder.write("own.geojson", &own);
     for name in ["all", "own"] {
         folder.must(&format!("clip {name}.geojson --to-crs EPSG:4326 -o o.geojsonl"));
-        let told = text(&folder, "o.geojsonl");
-        let numbers = told.split("coordinates\":[").nth(1).and_then(|t| t.split(']').next());
+        let printed = text(&folder, "o.geojsonl");
+        let numbers = printed.split("coordinates\":[").nth(1).and_then(|t| t.split(']').next());
         let numbers: Vec<f64> =
             numbers.expect("a point").split(',').map(|n| n.parse().expect("a number")).collect();
-        assert!((numbers[0] - x).abs() < 1e-9 && (numbers[1] - y).abs() < 1e-9, "{told}");
-        assert!(!told.contains("crs"), "{told}");
+        assert!((numbers[0] - x).abs() < 1e-9 && (numbers[1] - y).abs() < 1e-9, "{printed}");
+        assert!(!printed.contains("crs"), "{printed}");
         folder.must(&format!("clip {name}.geojson -o o.wkt"));
         assert_eq!(text(&folder, "o.wkt"), "SRID=3857;POINT (1489000 6894000.5)\n");
     }
@@ -300,8 +306,8 @@ fn systems_that_geojson_states_are_converted_from() {
     }
     let many = late.replace(&feature, &[&feature[..]; 300].join(","));
     folder.write("many.geojson", many);
-    let told = "durer clip --from-crs EPSG:3857 writes a file that states it";
-    folder.run("fix many.geojson -o l.shp").fails(1, told);
+    let printed = "durer clip --from-crs EPSG:3857 writes a file that states it";
+    folder.run("fix many.geojson -o l.shp").fails(1, printed);
     for command in ["tiles late.geojson -o l.pmtiles", "draw late.geojson --to-crs 3035 -o l.png"] {
         folder.run(command).fails(1, "; --from-crs EPSG:3857 sets their system");
     }
@@ -325,7 +331,7 @@ fn systems_that_geojson_states_are_converted_from() {
 }
 
 #[test]
-fn metres_as_degrees_are_told() {
+fn metres_as_degrees_are_reported() {
     let folder = Folder::new();
     folder.write("far.csv", "x,y\n500000,5400000\n1,2\n");
     let ended = folder.must("clip far.csv -o o.geojson");

@@ -9,8 +9,8 @@ fn clip(input: &str, mask: &str, options: &str) -> (Vec<String>, String) {
     folder.write("in.wkt", input);
     folder.write("m.wkt", mask);
     let ended: Ended = folder.must(&format!("clip in.wkt {options} -o -"));
-    let told = ended.err.clone();
-    (text(ended).lines().map(str::to_owned).collect(), told)
+    let printed = ended.err.clone();
+    (text(ended).lines().map(str::to_owned).collect(), printed)
 }
 
 const PARCELS: &str = "POLYGON((0 0,10 0,10 5,10 10,0 10,0 0))\n\
@@ -92,22 +92,22 @@ fn borders_of_windows_are_met_exactly_by_what_has_to_be_repaired_too() {
 fn collections_are_sets_of_points() {
     let both =
         "GEOMETRYCOLLECTION(POLYGON((0 0,6 0,6 6,0 6,0 0)),POLYGON((4 0,10 0,10 6,4 6,4 0)))";
-    let (union, told) = clip(both, "", "--op union");
+    let (union, printed) = clip(both, "", "--op union");
     assert_eq!(union, ["POLYGON ((0 0, 4 0, 6 0, 10 0, 10 6, 6 6, 4 6, 0 6, 0 0))"]);
-    assert_eq!(told, "");
+    assert_eq!(printed, "");
     // The same holds for a mask.
     let (cut, _) = clip("POINT(5 3)", both, "--by m.wkt");
     assert_eq!(cut, ["POINT (5 3)"]);
 }
 
 #[test]
-fn repairs_and_lines_without_length_are_told() {
-    let (_, told) = clip("POLYGON((0 0,10 10,10 0,0 10,0 0))", "", "--op union");
-    assert!(told.contains("made valid by the even-odd rule"), "{told}");
+fn repairs_and_lines_without_length_are_reported() {
+    let (_, printed) = clip("POLYGON((0 0,10 10,10 0,0 10,0 0))", "", "--op union");
+    assert!(printed.contains("made valid by the even-odd rule"), "{printed}");
     let lines = "LINESTRING(1 1,1 1)\nMULTILINESTRING((1 1,1 1),(0 0,1 0))\nLINESTRING(9 9,9 9)";
-    let (cut, told) = clip(lines, "", "--window 0,0,4,4");
+    let (cut, printed) = clip(lines, "", "--window 0,0,4,4");
     assert_eq!(cut, ["LINESTRING (0 0, 1 0)"]);
-    assert!(told.contains("left out: 2 lines without length"), "{told}");
+    assert!(printed.contains("left out: 2 lines without length"), "{printed}");
 }
 
 #[test]
@@ -122,13 +122,13 @@ fn positions_of_mixed_dimensions_keep_their_heights() {
 fn windows_go_across_the_180th_meridian() {
     let over =
         "POLYGON((170 -10,190 -10,190 10,170 10,170 -10))\nPOINT(185 5)\nPOINT(-175 5)\nPOINT(0 0)";
-    let (cut, told) = clip(over, "", "--window 175,-10,-170,5");
+    let (cut, printed) = clip(over, "", "--window 175,-10,-170,5");
     assert_eq!(cut[0], "POLYGON ((175 -10, 190 -10, 190 5, 175 5, 175 -10))");
     assert_eq!(cut[1..], ["POINT (185 5)", "POINT (-175 5)"]);
-    assert_eq!(told, "");
-    let (cut, told) = clip("LINESTRING(175 5,-175 5)", "", "--window 170,-10,-170,10");
+    assert_eq!(printed, "");
+    let (cut, printed) = clip("LINESTRING(175 5,-175 5)", "", "--window 170,-10,-170,10");
     assert_eq!(cut, ["MULTILINESTRING ((175 5, 170 5), (-170 5, -175 5))"]);
-    assert!(told.contains("more than 180 degrees of longitude"), "{told}");
+    assert!(printed.contains("more than 180 degrees of longitude"), "{printed}");
 }
 
 #[test]

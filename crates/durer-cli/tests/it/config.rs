@@ -76,7 +76,7 @@ fn refused(text: &str) -> Ended {
 }
 
 #[test]
-fn what_is_wrong_in_it_is_told_with_line_and_key() {
+fn what_is_wrong_in_it_is_reported_with_line_and_key() {
     for (text, line, parts) in [
         ("[render]\nsize = 8\nsizze = 9\n", 3, ["`sizze`", "no such option"]),
         ("[render]\n\nsize = \"big\"\n", 3, ["`size`", "1920x1080"]),

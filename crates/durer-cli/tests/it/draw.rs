@@ -226,14 +226,14 @@ fn an_area_whose_best_place_is_taken_has_others() {
 }
 
 #[test]
-fn what_a_map_cannot_use_is_told() {
+fn what_a_map_cannot_use_is_reported() {
     let folder = folder();
     folder.write("no.ttf", "no font");
     folder.run("draw map.geojson --font no.ttf -o m.png").fails(1, "it is not a TrueType");
-    let told = folder.must("draw map.geojson --dashes 0.0001 -o m.png").err;
-    assert!(told.contains("more than 100,000 dashes"), "{told}");
-    let told = folder.must("draw map.geojson --dashes 4 --stroke hsl(0,100%,50%) -o m.png").err;
-    assert!(!told.contains("dashes"), "{told}");
+    let printed = folder.must("draw map.geojson --dashes 0.0001 -o m.png").err;
+    assert!(printed.contains("more than 100,000 dashes"), "{printed}");
+    let printed = folder.must("draw map.geojson --dashes 4 --stroke hsl(0,100%,50%) -o m.png").err;
+    assert!(!printed.contains("dashes"), "{printed}");
 }
 
 #[test]
@@ -263,7 +263,7 @@ fn streams_are_read_and_written() {
 }
 
 #[test]
-fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_told() {
+fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_reported() {
     let folder = Folder::new();
     let text = |family: &str| {
         format!(
@@ -274,8 +274,8 @@ fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_told() {
     folder.write("plain.svg", text("sans-serif"));
     folder.write("other.svg", text("Papyrus"));
     assert_eq!(folder.must("draw plain.svg -o a.png").err, "");
-    let told = folder.must("draw other.svg -o b.png").err;
-    assert!(told.contains("font `Papyrus` is missing; `DejaVu Sans` is used"), "{told}");
+    let printed = folder.must("draw other.svg -o b.png").err;
+    assert!(printed.contains("font `Papyrus` is missing; `DejaVu Sans` is used"), "{printed}");
     assert!(picture(&folder, "a.png").shows_something());
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
     folder
@@ -285,9 +285,9 @@ fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_told() {
 }
 
 #[test]
-fn styles_and_letters_that_no_font_has_are_told() {
+fn styles_and_letters_that_no_font_has_are_reported() {
     let folder = Folder::new();
-    let told = |style: &str, text: &str| {
+    let printed = |style: &str, text: &str| {
         let svg = format!(
             r##"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="20">
 <text x="2" y="16" font-size="16" {style}>{text}</text></svg>"##
@@ -303,12 +303,12 @@ fn styles_and_letters_that_no_font_has_are_told() {
         ("font-family='Papyrus' font-weight='bold'", "`Papyrus` bold"),
     ] {
         let message = format!("font {wanted} is missing; `DejaVu Sans` is used in its place");
-        let told = told(style, "ab");
-        assert!(told.contains(&message), "{told}");
+        let printed = printed(style, "ab");
+        assert!(printed.contains(&message), "{printed}");
     }
-    assert_eq!(told("font-family='sans-serif'", "ab"), "");
+    assert_eq!(printed("font-family='sans-serif'", "ab"), "");
     let message = "there is no glyph for 中 (U+4E2D), 文 (U+6587)";
-    let missing = told("font-family='sans-serif'", "a 中文 b");
+    let missing = printed("font-family='sans-serif'", "a 中文 b");
     assert!(missing.contains(message), "{missing}");
 
     folder.write(
@@ -316,8 +316,8 @@ fn styles_and_letters_that_no_font_has_are_told() {
         r#"{"type": "Feature", "properties": {"name": "a中"},
             "geometry": {"type": "Point", "coordinates": [0, 0]}}"#,
     );
-    let told = folder.must("draw a.json -o a.png --label name --size 99").err;
-    assert!(told.contains("there is no glyph for 中 (U+4E2D)"), "{told}");
+    let printed = folder.must("draw a.json -o a.png --label name --size 99").err;
+    assert!(printed.contains("there is no glyph for 中 (U+4E2D)"), "{printed}");
 }
 
 #[test]
@@ -332,12 +332,12 @@ fn what_is_not_drawn_is_named_once() {
 <rect width="2" height="2"><animate attributeName="x" to="3"/></rect></svg>"##,
     );
     let report = folder.must("draw a.svg -o a.png --json").json();
-    let told = report["warnings"].as_array().unwrap();
-    let named = |part: &str| told.iter().filter(|w| w.as_str().unwrap().contains(part)).count();
+    let printed = report["warnings"].as_array().unwrap();
+    let named = |part: &str| printed.iter().filter(|w| w.as_str().unwrap().contains(part)).count();
     for part in ["filters are not drawn", "`script`", "line 5, column", "`animate`"] {
-        assert_eq!(named(part), 1, "{part}: {told:?}");
+        assert_eq!(named(part), 1, "{part}: {printed:?}");
     }
-    assert_eq!(told.len(), 3);
+    assert_eq!(printed.len(), 3);
 }
 
 #[test]
@@ -347,9 +347,9 @@ fn a_drawing_too_large_to_be_drawn_is_bad_data() {
         |size: &str| format!("<!-- wide -->\n<svg xmlns='http://www.w3.org/2000/svg' {size}/>");
     folder.write("wide.svg", text("width='1e9' height='2'"));
     folder.write("long.svg", text("width='2' height='40000'"));
-    let told =
+    let printed =
         "wide.svg: line 2, column 1: the size 1000000000x2: 2000000000 pixels are above the limit";
-    folder.run("draw wide.svg -o a.png").fails(1, told);
+    folder.run("draw wide.svg -o a.png").fails(1, printed);
     folder.run("draw long.svg -o a.png").fails(1, "long.svg: line 2, column 1: the size 2x40000: ");
     // The other dimension follows from the drawing's shape.
     folder.run("draw long.svg -o a.png --size 9x").fails(1, "long.svg: line 2, column 1: the size");
@@ -388,7 +388,7 @@ fn an_island_is_not_hidden_by_its_name_and_a_large_country_has_one() {
 }
 
 #[test]
-fn wrong_use_and_bad_data_are_told() {
+fn wrong_use_and_bad_data_are_reported() {
     let folder = folder();
     folder.write("no.svg", "<svg xmlns='http://www.w3.org/2000/svg'><rect></svg>");
     folder.write("empty.geojson", r#"{"type":"FeatureCollection","features":[]}"#);

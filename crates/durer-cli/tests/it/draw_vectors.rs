@@ -241,8 +241,8 @@ fn one_layer_of_a_file_is_drawn_and_described() {
         folder.must("draw --layer b t.json t.json -o a.png --json --window 0,0,3,3").json();
     assert_eq!(report["layers"][1]["map"]["points"], 0, "the layer is that of both");
     folder.run("draw t.json --layer c -o a.png").fails(1, "there is no layer c");
-    let told = folder.must("info t.json --layer b --json").json();
-    assert_eq!((&told["name"], &told["features"]), (&"b".into(), &1.into()), "{told}");
+    let printed = folder.must("info t.json --layer b --json").json();
+    assert_eq!((&printed["name"], &printed["features"]), (&"b".into(), &1.into()), "{printed}");
     folder.run("info t.json --layer c").fails(1, "there is no layer c");
     folder.write("a.svg", SVG);
     folder.run("draw a.svg --layer b -o a.png").fails(2, "--layer is for map data");
@@ -404,8 +404,8 @@ fn features_are_drawn_that_meet_conditions() {
     };
     folder.write("c.geojsonl", [city(1, 10), city(2, 200), city(3, 3000)].join("\n"));
     let counts = |line: &str| {
-        let told = folder.must(&format!("draw {line} -o a.png --json --window 0,0,4,4")).json();
-        told["layers"]
+        let printed = folder.must(&format!("draw {line} -o a.png --json --window 0,0,4,4")).json();
+        printed["layers"]
             .as_array()
             .expect("layers")
             .iter()
@@ -422,7 +422,7 @@ fn features_are_drawn_that_meet_conditions() {
 }
 
 #[test]
-fn layers_in_several_systems_are_told() {
+fn layers_in_several_systems_are_reported() {
     let folder = Folder::new();
     folder.write("a.geojson", r#"{"type":"Point","coordinates":[9,48]}"#);
     folder.write("b.wkt", "SRID=25832;POINT (500000 5400000)");
@@ -483,16 +483,20 @@ fn broken_features_are_left_out_of_maps_on_request() {
 }
 
 #[test]
-fn options_of_labels_and_strokes_that_do_nothing_are_told() {
+fn options_of_labels_and_strokes_that_do_nothing_are_reported() {
     let folder = Folder::new();
     folder.write("a.wkt", "LINESTRING (0 0, 9 9)");
-    for (options, told) in [
+    for (options, printed) in [
         ("a.wkt --label-size 9", "--label-size: it has no effect: there is no --label"),
         ("--label-halo red a.wkt a.wkt", "--label-halo: it has no effect: there is no --label"),
         ("a.wkt --stroke none --dashes 2,1", "--dashes: it has no effect: --stroke is none"),
     ] {
         let ended = folder.must(&format!("draw {options} -o a.svg"));
-        assert!(ended.err.contains(&format!("durer: warning: {told}")), "{options}: {}", ended.err);
+        assert!(
+            ended.err.contains(&format!("durer: warning: {printed}")),
+            "{options}: {}",
+            ended.err
+        );
     }
     folder.write("b.geojson", MAP);
     for options in

@@ -158,7 +158,7 @@ fn options_that_do_not_fit_say_what_does() {
 }
 
 #[test]
-fn what_a_sheet_cannot_show_is_told() {
+fn what_a_sheet_cannot_show_is_reported() {
     let folder = Folder::with_models();
     let ended = folder.must(
         "render cube.obj -o a.svg --sheet third-angle --section A:1,1,1,0 --section B:0,0,1,-9 \
@@ -215,7 +215,7 @@ fn sections_have_lines_of_their_own() {
 }
 
 #[test]
-fn hidden_line_drawings_are_hatched_where_that_is_asked_for() {
+fn hidden_line_drawings_are_hatched_where_that_is_requested() {
     let folder = Folder::with_models();
     let drawn = |options: &str| {
         let ended = folder.must(&format!("render cube.obj {options} --json"));
@@ -294,7 +294,7 @@ fn gcode_takes_its_commands_and_speeds_from_options() {
 }
 
 #[test]
-fn a_pen_goes_short_ways_where_that_is_asked_for() {
+fn a_pen_goes_short_ways_where_that_is_requested() {
     let folder = folder();
     let travel = |options: &str| -> f64 {
         folder.must(&format!("render bracket.stl -o a.svg --hatch shade {options}"));
@@ -321,7 +321,7 @@ fn ends(line: &str) -> Option<[f64; 4]> {
 }
 
 #[test]
-fn near_lines_have_wider_pens_where_that_is_asked_for() {
+fn near_lines_have_wider_pens_where_that_is_requested() {
     let folder = folder();
     let layers = |options: &str| -> Vec<(String, f64)> {
         folder.must(&format!("render bracket.stl -o a.svg {options}"));
@@ -419,7 +419,7 @@ fn areas_are_disjoint_or_trapped_as_asked() {
 }
 
 #[test]
-fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
+fn outlines_are_smooth_and_bodies_searched_where_that_is_requested() {
     let folder = folder();
     // One surface that intersects itself.
     let crossing = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 1 -2\nv 3 1 -2\nv 2 1 2\n\
@@ -471,8 +471,8 @@ fn faces_are_welded_as_far_as_their_digits_or_the_user_say() {
         let ended = folder.must(&format!("render {name} -o o.geojson --json {options}"));
         let model = ended.json()["models"][0].clone();
         let count = |what: &str| model["pictures"][0]["drawing"][what].as_u64().unwrap();
-        let told = model["warnings"].to_string().contains("--weld LENGTH");
-        (count("edges"), count("border_edges"), told)
+        let printed = model["warnings"].to_string().contains("--weld LENGTH");
+        (count("edges"), count("border_edges"), printed)
     };
     assert_eq!(drawing("exact.stl", ""), (18, 0, false));
     assert_eq!(drawing("digit.stl", ""), (18, 0, false));
@@ -630,22 +630,22 @@ fn borders_of_areas_are_arcs() {
 #[test]
 fn g_code_tells_its_scale() {
     let folder = folder();
-    let told = folder.must("render bracket.stl -o b.gcode").err;
-    assert!(told.contains(":1; --scale 1:1 makes it as large as the model"), "{told}");
-    let told = folder.must("render bracket.stl -o b.gcode --scale 1:1 --unit mm").err;
-    assert!(!told.contains("the drawing is"), "{told}");
+    let printed = folder.must("render bracket.stl -o b.gcode").err;
+    assert!(printed.contains(":1; --scale 1:1 makes it as large as the model"), "{printed}");
+    let printed = folder.must("render bracket.stl -o b.gcode --scale 1:1 --unit mm").err;
+    assert!(!printed.contains("the drawing is"), "{printed}");
     // A drawing with a unit keeps its size; a warning says that it may exceed the machine.
     let scale = |options: &str| {
         let ended = folder.must(&format!("render bracket.stl -o b.gcode --json {options}"));
         let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];
         (drawing["scale_text"].as_str().unwrap().to_owned(), ended.err)
     };
-    let (text, told) = scale("--unit mm");
-    assert!(text == "1:1" && told.is_empty(), "{text} {told}");
-    let (text, told) = scale("--unit m");
-    assert!(text == "1:1" && told.contains("as large as the model"), "{text} {told}");
-    let (text, told) = scale("--unit m --page 300x200");
-    assert!(text.starts_with("1:") && told.contains("the drawing is 1:"), "{text} {told}");
+    let (text, printed) = scale("--unit mm");
+    assert!(text == "1:1" && printed.is_empty(), "{text} {printed}");
+    let (text, printed) = scale("--unit m");
+    assert!(text == "1:1" && printed.contains("as large as the model"), "{text} {printed}");
+    let (text, printed) = scale("--unit m --page 300x200");
+    assert!(text.starts_with("1:") && printed.contains("the drawing is 1:"), "{text} {printed}");
 }
 
 #[test]

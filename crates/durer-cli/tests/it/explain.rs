@@ -30,9 +30,9 @@ fn algorithms_and_examples_are_listed() {
 #[test]
 fn captions_are_text_without_an_output() {
     let folder = Folder::new();
-    let told = text(&folder, "explain cohen-sutherland --example line-eh");
-    let lines: Vec<&str> = told.lines().collect();
-    assert_eq!(lines.len(), 4, "{told}");
+    let printed = text(&folder, "explain cohen-sutherland --example line-eh");
+    let lines: Vec<&str> = printed.lines().collect();
+    assert_eq!(lines.len(), 4, "{printed}");
     assert_eq!(
         lines[0],
         "   1  [ 1]  Codes 0001 of A (left) and 0010 of B (right): OR is 0011, AND is 0000."
@@ -86,16 +86,17 @@ fn own_shapes_are_explained() {
     let folder = Folder::new();
     folder.write("plan.geojson", PLAN);
     folder.write("plan.wkt", "LINESTRING (-4 -2.5, 12.5 8.5)");
-    let told = text(&folder, "explain sutherland-hodgman plan.geojson --window 6,1,10,8");
-    assert!(told.contains("8 vertices are left"), "{told}");
-    let told = text(&folder, "explain cohen-sutherland plan.wkt --window 0,0,10,6");
-    assert!(told.contains("accepted") && told.lines().count() > 4, "{told}");
-    let told = text(&folder, "explain cohen-sutherland plan.wkt --window 0,0,10,6 --max-steps 2");
-    assert!(told.contains("2 steps are shown; "), "{told}");
+    let printed = text(&folder, "explain sutherland-hodgman plan.geojson --window 6,1,10,8");
+    assert!(printed.contains("8 vertices are left"), "{printed}");
+    let printed = text(&folder, "explain cohen-sutherland plan.wkt --window 0,0,10,6");
+    assert!(printed.contains("accepted") && printed.lines().count() > 4, "{printed}");
+    let printed =
+        text(&folder, "explain cohen-sutherland plan.wkt --window 0,0,10,6 --max-steps 2");
+    assert!(printed.contains("2 steps are shown; "), "{printed}");
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn what_is_wrong_is_reported() {
     let folder = Folder::with_models();
     folder.write("plan.geojson", PLAN);
     folder.write("a.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='8' height='5'><rect width='4' height='5'/></svg>");

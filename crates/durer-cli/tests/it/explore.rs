@@ -44,7 +44,7 @@ fn pages_of_a_folder_are_served() {
 }
 
 #[test]
-fn missing_pages_are_told_where_they_come_from() {
+fn missing_pages_are_reported_where_they_come_from() {
     let folder = Folder::new();
     folder.run("explore --no-open --from .").fails(2, "index.html");
     #[cfg(not(feature = "explorer"))]

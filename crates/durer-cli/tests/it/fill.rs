@@ -92,11 +92,11 @@ fn pictures_stand_as_viewers_show_them() {
     ] {
         let turned = row(png::ColorType::Grayscale, depth, Some(exif.clone()), data, 3);
         folder.write("a.png", turned);
-        let told = folder.must("fill a.png -o b.png --at 0,2 --color red").err;
+        let printed = folder.must("fill a.png -o b.png --at 0,2 --color red").err;
         let turned = Picture::decode(&folder.read("b.png"));
         assert_eq!((turned.width, turned.height), (1, 3));
         assert_eq!([0, 1, 2].map(|y| turned.pixel(0, y)[0]), [10, 20, 255]);
-        assert_eq!(told, "");
+        assert_eq!(printed, "");
     }
 }
 
@@ -110,8 +110,8 @@ fn deep<const N: usize>(
     let data: Vec<u8> = pixels.as_flattened().iter().flat_map(|s| s.to_be_bytes()).collect();
     let width = pixels.len() as u32;
     folder.write("deep.png", row(color, png::BitDepth::Sixteen, None, &data, width));
-    let told = folder.must(&format!("fill deep.png -o filled.png --at 0,0 {how}")).err;
-    assert_eq!(told, "");
+    let printed = folder.must(&format!("fill deep.png -o filled.png --at 0,0 {how}")).err;
+    assert_eq!(printed, "");
     let bytes = folder.read("filled.png");
     let reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     let (color, depth) = reader.output_color_type();
@@ -178,7 +178,7 @@ fn tolerances_of_sixteen_bits_are_steps_of_eight() {
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let folder = folder();
     folder.write("no.png", "not a picture");
     for (arguments, code, part) in [

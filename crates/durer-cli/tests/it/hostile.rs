@@ -38,11 +38,11 @@ fn no_name_forges_a_message() {
     );
     assert!(!steers(std::str::from_utf8(&ended.out).unwrap()));
     assert!(ended.json()["models"][0]["warnings"][0].as_str().unwrap().contains(r"\u{1b}"));
-    let told = folder.must("info b.obj");
-    assert!(!steers(std::str::from_utf8(&told.out).unwrap()));
-    let told = folder.must("info b.obj --json");
-    assert!(!steers(std::str::from_utf8(&told.out).unwrap()));
-    assert_eq!(told.json()["materials"][0]["name"], "a\x1b]0;pwn\x07\u{202e}");
+    let printed = folder.must("info b.obj");
+    assert!(!steers(std::str::from_utf8(&printed.out).unwrap()));
+    let printed = folder.must("info b.obj --json");
+    assert!(!steers(std::str::from_utf8(&printed.out).unwrap()));
+    assert_eq!(printed.json()["materials"][0]["name"], "a\x1b]0;pwn\x07\u{202e}");
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn errors_name_the_file() {
 
 #[cfg(unix)]
 #[test]
-fn places_are_told_by_what_is_there() {
+fn places_are_reported_by_what_is_there() {
     let folder = Folder::with_models();
     fs::write(folder.path("a.png"), "old").unwrap();
     std::os::unix::fs::symlink("a.png", folder.path("link.png")).unwrap();

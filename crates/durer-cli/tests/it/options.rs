@@ -97,7 +97,7 @@ fn options_that_a_format_has_nothing_for_are_named() {
 }
 
 #[test]
-fn a_camera_that_is_not_there_is_told_with_those_that_are() {
+fn a_camera_that_is_not_there_is_reported_with_those_that_are() {
     let folder = Folder::with_models();
     let ended = folder.run("render cube.obj -o a.png --camera Main");
     ended.fails(1, "cube.obj: ").fails(1, "no camera `Main`").fails(1, "the file has no cameras");
@@ -130,9 +130,9 @@ fn completions_and_the_manual_know_all_options() {
 }
 
 #[test]
-fn options_without_effect_are_told() {
+fn options_without_effect_are_reported() {
     let folder = Folder::with_models();
-    for (options, told) in [
+    for (options, printed) in [
         ("a.svg --light ambient:red", "--light: it has no effect: the drawing consists of lines"),
         ("a.svg --style wireframe --exposure 1", "--exposure: it has no effect: the drawing"),
         ("a.svg --style wireframe --hidden dashed", "--hidden: it has no effect: a wireframe"),
@@ -153,7 +153,11 @@ fn options_without_effect_are_told() {
     ] {
         let size = if options.starts_with("a.png") { " --size 8x8" } else { "" };
         let ended = folder.must(&format!("render cube.obj -o {options}{size}"));
-        assert!(ended.err.contains(&format!("durer: warning: {told}")), "{options}: {}", ended.err);
+        assert!(
+            ended.err.contains(&format!("durer: warning: {printed}")),
+            "{options}: {}",
+            ended.err
+        );
     }
     for options in [
         "a.png --size 8x8 --algorithm depth-sort --aa 1",

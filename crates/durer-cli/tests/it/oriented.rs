@@ -39,8 +39,8 @@ fn info_reports_bodies_inside_out_and_flipped_faces() {
             "{name}"
         );
         let text = String::from_utf8(folder.must(&format!("info {name}")).out).expect("text");
-        let told = text.lines().find(|line| line.trim_start().starts_with("faces "));
-        assert_eq!(told.map_or("", |line| line.trim_start()[5..].trim()), words, "{name}");
+        let printed = text.lines().find(|line| line.trim_start().starts_with("faces "));
+        assert_eq!(printed.map_or("", |line| line.trim_start()[5..].trim()), words, "{name}");
     }
 }
 

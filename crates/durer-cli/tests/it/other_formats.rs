@@ -196,7 +196,7 @@ fn times_that_have_no_meaning_are_refused() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_of_animations_too() {
+fn a_full_disk_is_reported_of_animations_too() {
     let folder = Folder::with_models();
     let turn = "render cube.obj --size 8x8 --turntable 2 -o /dev/full";
     folder.run(&format!("{turn} --format gif")).fails(1, "/dev/full: No space left on device");

@@ -25,7 +25,7 @@ fn a_new_picture_replaces_the_old_one() {
 }
 
 #[test]
-fn places_that_cannot_be_written_are_told_before_the_work() {
+fn places_that_cannot_be_written_are_reported_before_the_work() {
     let folder = Folder::with_models();
     folder.run("render cube.obj -o nowhere/out.png").fails(1, "nowhere");
     folder.run("render cube.obj -o cube.obj/out.png").fails(1, "not a folder");
@@ -53,9 +53,9 @@ fn commands_name_the_suffixes_that_they_can_write() {
         }
     }
     for wrong in ["x.gif", "x.hpgl"] {
-        let told = format!("--output {wrong}: drawings and maps are written as PNG");
+        let printed = format!("--output {wrong}: drawings and maps are written as PNG");
         let ended = folder.run(&format!("draw map.wkt -o {wrong}"));
-        ended.fails(2, &told).fails(2, ".webp, .svg, .pdf or .dxf");
+        ended.fails(2, &printed).fails(2, ".webp, .svg, .pdf or .dxf");
     }
     folder.run("render cube.obj -o x.bmp").fails(2, ".svg, .pdf, .dxf, .hpgl, .gcode, .geojson");
     folder.run("render cube.obj -o x.gif").fails(2, "a GIF is for a --turntable");
@@ -94,7 +94,7 @@ fn read_only_files_and_links_are_kept() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told() {
+fn a_full_disk_is_reported() {
     let folder = Folder::with_models();
     let ended = folder.run("render cube.obj -o /dev/full --size 8x8");
     ended.fails(1, "/dev/full: No space left on device");
@@ -139,7 +139,7 @@ fn names_of_pictures_depend_on_their_own_model_alone() {
 }
 
 #[test]
-fn failures_are_skipped_when_that_is_asked_for() {
+fn failures_are_skipped_when_that_is_requested() {
     let folder = Folder::with_models();
     let run = |options: &str| folder.run(&format!("render {options} -o out/ --size 8x8"));
     run("broken.obj cube.obj").fails(1, "broken.obj: line 3");

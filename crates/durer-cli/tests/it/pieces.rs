@@ -145,7 +145,7 @@ fn compare(folder: &Folder, model: &str, options: &str) {
             assert!(!plane.is_empty(), "{model}");
         }
     }
-    let told = |ended: &crate::harness::Ended| {
+    let printed = |ended: &crate::harness::Ended| {
         let report = ended.json();
         let picture = &report["pictures"][0];
         let of = |value: &Value, names: &[&str]| -> Vec<Value> {
@@ -154,7 +154,7 @@ fn compare(folder: &Folder, model: &str, options: &str) {
         let picture = of(picture, &["triangles", "status", "width", "algorithm", "cameras"]);
         (picture, of(&report["models"][0], &["format", "warnings"]))
     };
-    assert_eq!(told(&whole), told(&pieces), "{model} {options}");
+    assert_eq!(printed(&whole), printed(&pieces), "{model} {options}");
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn ply_in_pieces_gives_the_picture_of_the_whole() {
 }
 
 #[test]
-fn info_is_told_of_models_in_pieces() {
+fn info_is_reported_of_models_in_pieces() {
     let folder = Folder::new();
     folder.write("a.stl", stl(|i| i == 9000));
     folder.write("a.ply", Ply { faces: true, colors: true, wide: true, ..Ply::default() }.file());
@@ -225,7 +225,7 @@ fn info_is_told_of_models_in_pieces() {
 }
 
 #[test]
-fn what_is_not_seen_or_not_there_is_told_of_pieces_too() {
+fn what_is_not_seen_or_not_there_is_reported_of_pieces_too() {
     let folder = Folder::new();
     folder.write("a.stl", stl(|_| false));
     for (options, why) in [

@@ -98,7 +98,7 @@ fn points_become_a_surface_and_poles_are_left_out() {
 }
 
 #[test]
-fn broken_height_maps_are_told_with_their_place() {
+fn broken_height_maps_are_reported_with_their_place() {
     let folder = Folder::new();
     folder.write(
         "short.asc",
@@ -135,9 +135,9 @@ fn ranges_too_large_or_too_small_are_refused_with_the_limit() {
 }
 
 #[test]
-fn options_without_effect_are_told() {
+fn options_without_effect_are_reported() {
     let folder = Folder::new();
-    for (options, told) in [
+    for (options, printed) in [
         ("a.svg --no-axes --labels a,b,c", "--labels: it has no effect: the plot has no axes"),
         ("a.svg --no-color-bar", "--no-color-bar: it has no effect: there is no --color-map"),
         ("a.svg --lines none --fill --every 2", "--every: it has no effect: the plot has no lines"),
@@ -147,7 +147,11 @@ fn options_without_effect_are_told() {
         ("a.png --size 40x30 --pen-order", "--pen-order: it has no effect: it is for plotters"),
     ] {
         let ended = folder.must(&format!("plot --formula x --samples 4 -o {options}"));
-        assert!(ended.err.contains(&format!("durer: warning: {told}")), "{options}: {}", ended.err);
+        assert!(
+            ended.err.contains(&format!("durer: warning: {printed}")),
+            "{options}: {}",
+            ended.err
+        );
     }
     let ended = folder.must(
         "plot --formula x --samples 4 -o a.svg --labels a,b,c --color-map viridis --no-color-bar --every 2 --ink red",

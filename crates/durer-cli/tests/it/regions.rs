@@ -46,7 +46,7 @@ fn buffers_have_the_area_that_they_should() {
 #[test]
 fn features_with_one_value_become_one() {
     let folder = folder();
-    let told = folder.must("dissolve in.geojson --by use -o out.geojson --json");
+    let printed = folder.must("dissolve in.geojson --by use -o out.geojson --json");
     let found = features(&folder, "out.geojson");
     let properties: Vec<String> = found.iter().map(|f| f["properties"].to_string()).collect();
     let expected =
@@ -54,25 +54,25 @@ fn features_with_one_value_become_one() {
     assert_eq!(properties, expected);
     assert_eq!(found[0]["geometry"]["coordinates"].as_array().map(Vec::len), Some(4));
     assert_eq!(found[2]["geometry"]["type"], "LineString");
-    assert_eq!(told.json()["out"]["area"], 8.0 + 16.0 + 4.0 + 16.0);
-    assert!(told.err.contains("1 feature is not valid"), "{}", told.err);
-    let told = folder.must("dissolve in.geojson --by owner -o out.geojson --json");
-    assert!(told.err.contains("no feature has the field owner"), "{}", told.err);
-    assert!(told.err.contains("some features have and others lack"), "{}", told.err);
+    assert_eq!(printed.json()["out"]["area"], 8.0 + 16.0 + 4.0 + 16.0);
+    assert!(printed.err.contains("1 feature is not valid"), "{}", printed.err);
+    let printed = folder.must("dissolve in.geojson --by owner -o out.geojson --json");
+    assert!(printed.err.contains("no feature has the field owner"), "{}", printed.err);
+    assert!(printed.err.contains("some features have and others lack"), "{}", printed.err);
     assert_eq!(
         features(&folder, "out.geojson")[0]["geometry"]["geometries"][0]["coordinates"][0][0][0][2],
         7
     );
     // One feature of all polygons and the line; overlaps count once.
-    assert_eq!(told.json()["out"]["area"], 8.0 + 34.0);
+    assert_eq!(printed.json()["out"]["area"], 8.0 + 34.0);
 }
 
 #[test]
 fn what_is_not_valid_is_made_so_and_the_rest_stays() {
     let folder = folder();
-    let told = folder.must("fix in.geojson -o out.geojson --json");
-    assert_eq!(told.json()["repaired"], 1);
-    assert!(told.err.contains("feature 1 is the first that was repaired"), "{}", told.err);
+    let printed = folder.must("fix in.geojson -o out.geojson --json");
+    assert_eq!(printed.json()["repaired"], 1);
+    assert!(printed.err.contains("feature 1 is the first that was repaired"), "{}", printed.err);
     let (given, found) = (features(&folder, "in.geojson"), features(&folder, "out.geojson"));
     assert_eq!(found[1..], given[1..]);
     assert_eq!(found[0]["geometry"]["type"], "MultiPolygon");
@@ -83,7 +83,7 @@ fn what_is_not_valid_is_made_so_and_the_rest_stays() {
 }
 
 #[test]
-fn faults_are_told_with_their_places() {
+fn faults_are_reported_with_their_places() {
     let folder = folder();
     let ended = folder.run("check in.geojson --coverage");
     assert_eq!(ended.code, 1);
@@ -127,9 +127,13 @@ fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
     folder.write("in.geojson", MEETING);
     folder.write("mask.wkt", "POLYGON ((33 8.2, 36 8.6, 35 11, 32.5 9.5, 33 8.2))");
     folder.run("check in.geojson --coverage").fails(1, "not valid");
-    let told = folder.must("fix in.geojson --coverage -o out.geojson --json");
-    assert!(told.err.contains("1 feature got points that their neighbours have"), "{}", told.err);
-    assert_eq!(told.json()["repaired"], 1);
+    let printed = folder.must("fix in.geojson --coverage -o out.geojson --json");
+    assert!(
+        printed.err.contains("1 feature got points that their neighbours have"),
+        "{}",
+        printed.err
+    );
+    assert_eq!(printed.json()["repaired"], 1);
     // All three have the vertex now; the second has an interpolated height there.
     let out = String::from_utf8(folder.read("out.geojson")).unwrap();
     let parts: Vec<&str> = out.split("[33.963392794971185,9.464285229420625").collect();
@@ -154,17 +158,18 @@ fn broken_features_are_faults_or_left_out() {
     folder.write("a.csv", "id,WKT\n1,POINT (1 2)\n2,POINT (1\n3,POINT (3\n4,POINT (5 6)\n");
     folder.run("clip a.csv -o o.geojson").fails(1, "a.csv: line 3, feature 2: ");
     assert!(!folder.path("o.geojson").exists());
-    let told = "a.csv: line 3, feature 2: 2 features cannot be read and are left out; the first: ";
+    let printed =
+        "a.csv: line 3, feature 2: 2 features cannot be read and are left out; the first: ";
     for command in ["clip a.csv", "fix a.csv", "tiles a.csv --zoom 0"] {
         let out = if command.starts_with("tiles") { "o.pmtiles" } else { "o.geojson" };
         let ended = folder.run(&format!("{command} -o {out} --skip-failures"));
-        ended.fails(3, told);
+        ended.fails(3, printed);
         assert!(folder.path(out).exists(), "{command}");
     }
     let text = String::from_utf8(folder.read("o.geojson")).expect("text");
     assert_eq!(text.matches("\"Feature\"").count(), 2, "{text}");
     // Without another change, too.
-    folder.run("clip a.csv -o o.csv --skip-failures").fails(3, told);
+    folder.run("clip a.csv -o o.csv --skip-failures").fails(3, printed);
     folder.run("clip a.csv -o o.csv").fails(2, "--skip-failures");
     let checked = folder.run("check a.csv --json");
     checked.fails(1, "2 reading");
@@ -181,8 +186,8 @@ fn features_that_meet_conditions_are_checked() {
     };
     let whole = ring("a", 0).replace("[0,9],[9,0],[0,9],", "[9,0],[9,9],");
     folder.write("a.geojsonl", [whole, ring("b", 9), ring("b", 8)].join("\n"));
-    let told = folder.must("check a.geojsonl --where k=a --json").json();
-    assert_eq!((&told["features"], &told["valid"]), (&1.into(), &true.into()));
+    let printed = folder.must("check a.geojsonl --where k=a --json").json();
+    assert_eq!((&printed["features"], &printed["valid"]), (&1.into(), &true.into()));
     let ended = folder.run("check a.geojsonl --where k=b --json");
     assert_eq!(ended.json()["invalid"], 2, "{}", ended.err);
     assert_eq!(ended.json()["faults"][0]["feature"], 2, "numbers are those in the file");

@@ -167,11 +167,11 @@ fn names_in_another_case_are_found_and_told() {
     ] {
         folder.write("model/m.gltf", gltf(uri));
         let warnings = folder.must("info model/m.gltf --json").json()["warnings"].clone();
-        let told = warnings.to_string();
+        let printed = warnings.to_string();
         let wanted = uri.trim_start_matches("sub/../");
         let note = |found| format!("there is no `{wanted}`; `{found}` is taken");
-        assert_eq!(warnings.as_array().unwrap().len(), usize::from(found.is_some()), "{told}");
-        assert!(found.is_none_or(|found| told.contains(&note(found))), "{uri}: {told}");
+        assert_eq!(warnings.as_array().unwrap().len(), usize::from(found.is_some()), "{printed}");
+        assert!(found.is_none_or(|found| printed.contains(&note(found))), "{uri}: {printed}");
     }
     folder.write("model/m.gltf", gltf("tex/sub/c.bin"));
     folder.run("info model/m.gltf").fails(1, "tex/sub/c.bin");
@@ -181,8 +181,11 @@ fn names_in_another_case_are_found_and_told() {
     png(&folder, "model/quad.PNG");
     folder.write("model/LIB.mtl", "newmtl m\nmap_Kd Quad.png\n");
     folder.write("model/m.obj", format!("mtllib lib.mtl\nusemtl m\n{CUBE}"));
-    let told = folder.must("info model/m.obj --json").json()["warnings"].to_string();
-    assert!(told.contains("`LIB.mtl` is taken") && told.contains("`quad.PNG` is taken"), "{told}");
+    let printed = folder.must("info model/m.obj --json").json()["warnings"].to_string();
+    assert!(
+        printed.contains("`LIB.mtl` is taken") && printed.contains("`quad.PNG` is taken"),
+        "{printed}"
+    );
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn status(folder: &Folder, arguments: &str) -> (String, String) {
 }
 
 #[test]
-fn what_is_not_seen_is_told_with_its_reason() {
+fn what_is_not_seen_is_reported_with_its_reason() {
     let folder = Folder::with_models();
     folder.write("front.gltf", triangle("{}", 4));
     folder.write("clear.mtl", "newmtl a\nKd 1 0 0\nd 0\n");
@@ -45,13 +45,13 @@ fn what_is_not_seen_is_told_with_its_reason() {
         ("cube.obj -o a.png --size 90x30 --viewports front,back", "ok", ""),
         ("cube.obj -o a.png --size 40 --style hidden-line", "ok", ""),
     ] {
-        let (found, told) = status(&folder, arguments);
-        assert_eq!(found, expected, "{arguments}: {told}");
-        assert!(told.contains(reason), "{arguments}: {told}");
+        let (found, printed) = status(&folder, arguments);
+        assert_eq!(found, expected, "{arguments}: {printed}");
+        assert!(printed.contains(reason), "{arguments}: {printed}");
         assert_eq!(
-            told.is_empty(),
+            printed.is_empty(),
             reason.is_empty() && !arguments.contains("clear"),
-            "{arguments}: {told}"
+            "{arguments}: {printed}"
         );
     }
 }

@@ -67,7 +67,7 @@ fn shares_streams_and_drops() {
 }
 
 #[test]
-fn what_is_no_ring_is_told() {
+fn what_is_no_ring_is_reported() {
     let folder = Folder::new();
     folder.write(
         "a.wkt",
@@ -82,7 +82,7 @@ fn what_is_no_ring_is_told() {
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let folder = folder();
     for (options, part) in [
         ("-o a.wkt", "--tolerance"),

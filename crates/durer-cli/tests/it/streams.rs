@@ -47,7 +47,7 @@ fn a_closed_pipe_ends_quietly() {
 }
 
 #[test]
-fn a_full_standard_output_is_told() {
+fn a_full_standard_output_is_reported() {
     let full = || std::fs::OpenOptions::new().write(true).open("/dev/full");
     let folder = Folder::with_models();
     for arguments in

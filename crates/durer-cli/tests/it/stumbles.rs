@@ -24,8 +24,8 @@ fn empty_files_are_called_empty() {
     folder.run("draw empty.csv -o o.png").fails(1, "empty.csv: the file is empty");
     folder.run("fill empty.png -o o.png --at 0,0 --color red").fails(1, "is empty");
     folder.run("draw empty.geojson -o o.png").fails(1, "empty.geojson: the file is empty");
-    let told = folder.must("info empty.geojson");
-    assert!(String::from_utf8_lossy(&told.out).contains("geometry    none\n"), "{told:?}");
+    let printed = folder.must("info empty.geojson");
+    assert!(String::from_utf8_lossy(&printed.out).contains("geometry    none\n"), "{printed:?}");
     let ended = folder.must("tiles empty.geojson -o o.pmtiles --json");
     assert!(ended.err.contains("there is no feature in it"), "{}", ended.err);
     assert!(!ended.err.contains("chosen"), "{}", ended.err);
@@ -49,7 +49,7 @@ fn folders_that_are_missing_are_named() {
 }
 
 #[test]
-fn results_without_content_are_told() {
+fn results_without_content_are_reported() {
     let folder = folder();
     for (command, part) in [
         (
@@ -121,17 +121,24 @@ fn maps_on_standard_input_are_described() {
         child.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("written");
         Ended::of(child.wait_with_output().expect("ended"))
     };
-    let told = piped(r#"{"type":"Point","coordinates":[1,2]}"#).json();
-    assert_eq!((&told["format"], &told["features"]), (&"geojson".into(), &1.into()), "{told}");
+    let printed = piped(r#"{"type":"Point","coordinates":[1,2]}"#).json();
+    assert_eq!(
+        (&printed["format"], &printed["features"]),
+        (&"geojson".into(), &1.into()),
+        "{printed}"
+    );
     let layers =
         r#"{"a":{"type":"Point","coordinates":[1,2]},"b":{"type":"Point","coordinates":[3,4]}}"#;
-    let told = piped(&format!(r#"{{"type":"Topology","arcs":[],"objects":{layers}}}"#)).json();
-    assert_eq!(told["features"], 2, "{told}");
-    assert!(told["warnings"][0].as_str().expect("a warning").contains("become one"), "{told}");
-    let told = piped("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").json();
-    assert_eq!(told["format"], "OBJ");
-    let told = piped("x,y,z\n1,2,3\n4,5,6\n").json();
-    assert_eq!(told["features"], 2, "{told}");
+    let printed = piped(&format!(r#"{{"type":"Topology","arcs":[],"objects":{layers}}}"#)).json();
+    assert_eq!(printed["features"], 2, "{printed}");
+    assert!(
+        printed["warnings"][0].as_str().expect("a warning").contains("become one"),
+        "{printed}"
+    );
+    let printed = piped("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").json();
+    assert_eq!(printed["format"], "OBJ");
+    let printed = piped("x,y,z\n1,2,3\n4,5,6\n").json();
+    assert_eq!(printed["features"], 2, "{printed}");
 }
 
 #[test]

@@ -324,8 +324,8 @@ fn what_lies_beyond_the_date_line_comes_from_the_other_side() {
         "LINESTRING (170 5, -170 5)\nPOLYGON ((-180 -80, -90 -70, 0 -75, 90 -70, -180 -80))\n",
     );
     let long = folder.must("tiles cross.wkt --zoom 0 --buffer 0 -o long.pmtiles").err;
-    let told = "2 features (the first is feature 1) have edges of more than 180 degrees";
-    assert!(long.contains(told), "{long}");
+    let printed = "2 features (the first is feature 1) have edges of more than 180 degrees";
+    assert!(long.contains(printed), "{long}");
     let ended = folder.must("tiles cross.wkt --zoom 0 --buffer 0 --short-way -o short.pmtiles");
     assert!(!ended.err.contains("180 degrees"), "{}", ended.err);
     assert!(ended.err.contains("feature 2 goes around a pole"), "{}", ended.err);
@@ -488,9 +488,13 @@ fn each_layer_of_a_file_becomes_a_layer() {
     };
     assert_eq!(names(""), ["a", "b c"]);
     assert_eq!(names("--layer all"), ["all", "all"]);
-    let told = folder.must("info t.json --json").json();
-    assert_eq!((&told[0]["name"], &told[1]["name"]), (&"a".into(), &"b c".into()), "{told}");
-    assert_eq!(told[0]["warnings"], serde_json::json!([]));
+    let printed = folder.must("info t.json --json").json();
+    assert_eq!(
+        (&printed[0]["name"], &printed[1]["name"]),
+        (&"a".into(), &"b c".into()),
+        "{printed}"
+    );
+    assert_eq!(printed[0]["warnings"], serde_json::json!([]));
 }
 
 #[test]
@@ -551,7 +555,7 @@ fn clipped_tiles_wrap_around_the_world() {
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let folder = land();
     for (options, part) in [
         ("-o -", "tiles are many files"),

@@ -66,7 +66,7 @@ fn an_arrow_points_upwards_whichever_axis_is_up() {
 }
 
 #[test]
-fn axes_are_told_as_they_are_given() {
+fn axes_are_reported_as_they_are_given() {
     let folder = Folder::with_models();
     folder.must("render cube.obj -o a.png --size 8x8 --up-axis -Z");
     folder.run("render cube.obj -o a.png --up-axis w").fails(2, "-x");

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_broken_is_told_with_its_line() {
+    fn what_is_broken_is_reported_with_its_line() {
         let message =
             |text: &str, limit| Document::parse(text, limit).expect_err("broken").to_string();
         assert_eq!(message("<a>\n<b>", 999), "line 2, column 4: the file ends inside <b>");

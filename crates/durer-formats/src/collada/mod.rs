@@ -61,7 +61,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     }
     nodes.warn(&mut model);
     let lights = if options.own_lights { &nodes.lights[..] } else { &[] };
-    crate::eye::tell_dark(nodes.lights.len() - lights.len(), &mut model);
+    crate::eye::warn_of_dark(nodes.lights.len() - lights.len(), &mut model);
     eye::add(&mut model, &document, &nodes.cameras, lights, unit);
     animations(&document, root, &mut model);
     if model.scene.instances.is_empty() {

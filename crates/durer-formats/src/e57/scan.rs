@@ -9,7 +9,7 @@
 
 use crate::cloud::Cloud;
 use crate::foreign;
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result};
 use durer::math::{DMat3, DVec3, Vec4};
 use e57::{CartesianCoordinate, E57Reader, Point, PointCloud, RecordDataType, SphericalCoordinate};
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_files_are_told() {
+    fn broken_files_are_reported() {
         let bytes = colored();
         let message = |bytes: &[u8]| {
             read(bytes, &NoResources, &ReadOptions::default()).expect_err("broken").to_string()

@@ -27,7 +27,7 @@ pub(super) fn add(model: &mut Model, scene: &Scene, frames: &Frames, unit: f64, 
     let (mut lamps, mut broken, mut areas) = (Vec::new(), Tally::default(), Tally::default());
     if !own_lights {
         let shining = |node: &&Node| node.light.as_deref().is_some_and(|l| l.cast_light);
-        eye::tell_dark(scene.nodes.iter().map(|n| &**n).filter(shining).count(), model);
+        eye::warn_of_dark(scene.nodes.iter().map(|n| &**n).filter(shining).count(), model);
     }
     for node in scene.nodes.into_iter().filter(|_| own_lights) {
         let Some(light) = node.light.as_deref().filter(|l| l.cast_light) else { continue };

@@ -314,8 +314,8 @@ impl<'s> Materials<'s> {
 
 /// Returns the number of the set of texture coordinates that a texture names, else the first.
 fn set(texture: &Texture, sets: &[&str]) -> u32 {
-    let asked: &str = texture.uv_set.as_ref();
-    sets.iter().take(SETS).position(|name| *name == asked).unwrap_or(0) as u32
+    let requested: &str = texture.uv_set.as_ref();
+    sets.iter().take(SETS).position(|name| *name == requested).unwrap_or(0) as u32
 }
 
 /// Returns the matrix from texture coordinates with v downwards to the picture: the inverse of the picture's placement.

@@ -372,7 +372,7 @@ fn cameras_and_lights_stand_at_their_nodes() {
 }
 
 #[test]
-fn what_is_left_out_is_told() {
+fn what_is_left_out_is_reported() {
     let hidden = "P: \"Visibility\", \"Visibility\", \"\", \"A\",0\n";
     let model = read(&file(SETTINGS, &node(2, "Mesh", hidden), &[(2, 0, ""), (1, 2, "")]));
     assert_eq!(
@@ -422,8 +422,8 @@ fn broken_and_large_files_are_refused() {
     let cut = read(&text[..text.find("Model: 2").expect("a node")]);
     assert!(warnings(&cut)[0].starts_with("the file ends before its last"), "{:?}", warnings(&cut));
     let binary = read_with("Kaydara FBX Binary  \0\x1a\0\x16", &NoResources, Limits::default());
-    let told = binary.expect_err("broken").to_string();
-    assert!(told.starts_with("the FBX file cannot be read: "), "{told}");
+    let messages = binary.expect_err("broken").to_string();
+    assert!(messages.starts_with("the FBX file cannot be read: "), "{messages}");
     let beyond = read_with(&text.replace("4,5,-7", "4,50,-7"), &NoResources, Limits::default());
     assert!(beyond.expect_err("broken").to_string().contains("an index beyond its list"));
     for end in (0..text.len()).step_by(97) {

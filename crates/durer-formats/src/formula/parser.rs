@@ -2,7 +2,7 @@
 
 use super::Operation;
 use super::function::{Function, function, unknown};
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Result};
 
 /// Deeper nesting of parentheses, signs and powers is refused; parsing recurses so deep.

@@ -241,7 +241,7 @@ impl Reader {
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         let line = self.rows.start(&self.text);
         let Some(row) = self.rows.next(&self.text) else {
-            self.tell(warnings);
+            self.warn(warnings);
             return Ok(None);
         };
         self.check_commas(&row, line)?;
@@ -279,7 +279,7 @@ impl Reader {
         Err(Error::line(line, 0, message))
     }
 
-    fn tell(&mut self, warnings: &mut Warnings) {
+    fn warn(&mut self, warnings: &mut Warnings) {
         let [ragged, nowhere] = [&mut self.ragged, &mut self.nowhere].map(std::mem::take);
         warnings.add_counted(
             ragged,
@@ -363,7 +363,7 @@ fn whole(value: &[u8], line: u64, warnings: &mut Warnings) -> Result<Feature> {
         return Ok(Feature::default());
     }
     let here = |_: Place| Place::Line(line, 0);
-    let (feature, mut told) = if wkb::sniff_hex(value) {
+    let (feature, mut own) = if wkb::sniff_hex(value) {
         let bytes = wkb::decode_hex(value, line)?;
         let mut reader = wkb::Reader::new(&bytes);
         (reader.next_feature(), reader.warnings)
@@ -371,8 +371,8 @@ fn whole(value: &[u8], line: u64, warnings: &mut Warnings) -> Result<Feature> {
         let mut reader = wkt::Reader::new(value, wkt::Mark::default());
         (reader.next_feature(), reader.warnings)
     };
-    told.relocate(here);
-    warnings.append(&mut told);
+    own.relocate(here);
+    warnings.append(&mut own);
     feature.map(Option::unwrap_or_default).map_err(|e| e.at(here))
 }
 

@@ -148,7 +148,7 @@ impl GeoFormat {
     }
 
     /// Returns whether it has a place for the number of the coordinate system.
-    pub fn tells_system(self) -> bool {
+    pub fn states_system(self) -> bool {
         matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Csv)
             || matches!(self, Self::Shapefile | Self::FlatGeobuf)
             || matches!(self, Self::GeoPackage | Self::GeoParquet)
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_are_told_apart() {
+    fn formats_are_reported_apart() {
         for (content, expected) in [
             (&b"\xef\xbb\xbf {"[..], Some(GeoFormat::GeoJson)),
             (b"\x1e{", Some(GeoFormat::GeoJsonRs)),

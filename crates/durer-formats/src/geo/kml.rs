@@ -45,7 +45,7 @@ pub fn read(text: &str, warnings: &mut Warnings) -> Result<Vec<Feature>> {
             reader.faults.others.add(|| place);
         }
     }
-    reader.faults.tell(warnings);
+    reader.faults.warn(warnings);
     Ok(features)
 }
 
@@ -66,7 +66,7 @@ impl Faults {
         [models, coordinates, mixed, times].into_iter().for_each(|tally| tally.label(&label));
     }
 
-    fn tell(self, warnings: &mut Warnings) {
+    fn warn(self, warnings: &mut Warnings) {
         for (tally, [one, several]) in [
             (
                 self.others,

@@ -73,7 +73,7 @@ const FEATURES: &str =
 
 /// Returns a warning about things that cannot be read, with the reason for the first of them.
 fn unread(count: u64, things: &str, why: &str) -> String {
-    format!("{}: {why}", crate::told::agreeing(count, things))
+    format!("{}: {why}", crate::wording::agreeing(count, things))
 }
 
 /// Repairs and omissions while reading, the first thousand of them.
@@ -124,7 +124,7 @@ impl Warnings {
     }
 
     /// Adds warnings about the counted faults.
-    fn tell(&mut self) {
+    fn take_over(&mut self) {
         let [curves, members, nan] =
             [&mut self.curves, &mut self.members, &mut self.nan].map(std::mem::take);
         self.add_counted(
@@ -147,7 +147,7 @@ impl Warnings {
     /// Adds a warning about counted faults, if there are any, in words for one and for several.
     fn add_counted(&mut self, tally: crate::text::Tally, one: &str, several: &str) {
         if tally.count > 0 {
-            self.push(tally.first, crate::told::counted(tally.count, one, several));
+            self.push(tally.first, crate::wording::counted(tally.count, one, several));
         }
     }
 

@@ -157,8 +157,8 @@ impl<R: Read> Reader<R> {
         if let Source::GeoJson(reader) = &self.source {
             return reader.system();
         }
-        let told = super::system::of_members(self.members());
-        told.unwrap_or_else(|| self.system.clone())
+        let stated = super::system::of_members(self.members());
+        stated.unwrap_or_else(|| self.system.clone())
     }
 
     /// Skips features whose boxes do not meet a window, in the coordinates of the file, if the file has a spatial
@@ -191,11 +191,11 @@ impl<R: Read> Reader<R> {
             }
         };
         if feature.is_none() {
-            self.warnings.tell();
+            self.warnings.take_over();
             let Skipped { count, first, why } = &mut self.skipped;
             if let Some(why) = why.take() {
-                let told = super::unread(*count, super::FEATURES, &why);
-                self.warnings.push(std::mem::take(first), told);
+                let message = super::unread(*count, super::FEATURES, &why);
+                self.warnings.push(std::mem::take(first), message);
             }
         }
         Ok(feature)

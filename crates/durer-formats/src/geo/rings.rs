@@ -54,7 +54,7 @@ fn polygons(
     }
     if !alone.is_empty() {
         let words = "{ring is|rings are} oriented as {a hole but is|holes but are} in no ring; {it becomes a polygon|they become polygons}";
-        warnings.push(place.clone(), crate::told::agreeing(alone.len() as u64, words));
+        warnings.push(place.clone(), crate::wording::agreeing(alone.len() as u64, words));
     }
     polygons.append(&mut alone);
     polygons

@@ -36,7 +36,7 @@ impl System {
 /// Returns the system of the member `crs` of GeoJSON, as in its version of 2008: unknown if the member is null or names
 /// none that is known; `None` without the member.
 pub fn of_members(members: &[Member]) -> Option<System> {
-    members.iter().rfind(|member| member.name == CRS).map(|told| of_value(&told.value))
+    members.iter().rfind(|member| member.name == CRS).map(|member| of_value(&member.value))
 }
 
 /// Name of the member for the coordinate system, in JSON.

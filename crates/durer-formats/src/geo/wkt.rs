@@ -69,12 +69,12 @@ pub struct Mark {
     /// Index of the next byte.
     at: usize,
     /// The last place that was reported: byte, line, and the start of the line.
-    told: (usize, u64, usize),
+    last_place: (usize, u64, usize),
 }
 
 impl Default for Mark {
     fn default() -> Self {
-        Self { at: 0, told: (0, 1, 0) }
+        Self { at: 0, last_place: (0, 1, 0) }
     }
 }
 
@@ -82,19 +82,19 @@ impl Default for Mark {
 pub struct Reader<'a> {
     text: &'a [u8],
     at: usize,
-    told: (usize, u64, usize),
+    last_place: (usize, u64, usize),
     pub warnings: Warnings,
 }
 
 impl<'a> Reader<'a> {
     /// Reads from a mark on.
-    pub fn new(text: &'a [u8], Mark { at, told }: Mark) -> Self {
-        Self { text, at, told, warnings: Warnings::default() }
+    pub fn new(text: &'a [u8], Mark { at, last_place }: Mark) -> Self {
+        Self { text, at, last_place, warnings: Warnings::default() }
     }
 
     /// Returns the current position.
     pub fn mark(&self) -> Mark {
-        Mark { at: self.at, told: self.told }
+        Mark { at: self.at, last_place: self.last_place }
     }
 
     /// Returns the position after the line of the next geometry.
@@ -121,12 +121,12 @@ impl<'a> Reader<'a> {
     /// Returns the line and column of the next byte that is not a blank; counts on from the last reported place.
     fn place(&mut self) -> Place {
         self.peek();
-        let (from, mut line, mut start) = self.told;
+        let (from, mut line, mut start) = self.last_place;
         for (i, _) in self.text[from..self.at].iter().enumerate().filter(|(_, b)| **b == b'\n') {
             line += 1;
             start = from + i + 1;
         }
-        self.told = (self.at, line, start);
+        self.last_place = (self.at, line, start);
         Place::Line(line, (self.at - start) as u64 + 1)
     }
 
@@ -437,15 +437,17 @@ impl<'a> Reader<'a> {
             self.at += length;
             count += 1;
         }
-        let told = dimensions.get_or_insert(Dimensions::new(count > 2, count > 3));
-        if count != told.count() {
-            let message =
-                format!("a position of {} numbers is expected, this one has {count}", told.count());
+        let first = dimensions.get_or_insert(Dimensions::new(count > 2, count > 3));
+        if count != first.count() {
+            let message = format!(
+                "a position of {} numbers is expected, this one has {count}",
+                first.count()
+            );
             return Err(self.error(message));
         }
-        points.dimensions = *told;
+        points.dimensions = *first;
         let [x, y, z, m] = numbers;
-        points.push(DVec2::new(x, y), if *told == Dimensions::Xym { [0.0, z] } else { [z, m] });
+        points.push(DVec2::new(x, y), if *first == Dimensions::Xym { [0.0, z] } else { [z, m] });
         Ok(())
     }
 }

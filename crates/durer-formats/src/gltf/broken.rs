@@ -1,6 +1,6 @@
 //! Parts that could not be read, and are left out if something else remains.
 
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Model, Place, Result};
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ impl Broken {
     }
 
     /// Warns of omissions, and of missing buffers; if nothing is left to show, the first of them is an error.
-    pub fn tell(mut self, missing: impl Iterator<Item = Error>, model: &mut Model) -> Result<()> {
+    pub fn warn(mut self, missing: impl Iterator<Item = Error>, model: &mut Model) -> Result<()> {
         let unasked = missing.filter(|error| !self.kinds.contains_key(&error.to_string()));
         let mut unasked = unasked.collect::<Vec<_>>().into_iter();
         if model.scene.instances.is_empty() {

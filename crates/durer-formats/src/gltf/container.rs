@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use super::old;
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Error, Place, Result, Warning};
 use std::borrow::Cow;
 

@@ -351,7 +351,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn wrong_types_are_told_with_their_line() {
+    fn wrong_types_are_reported_with_their_line() {
         let error = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
         assert!(parse(br#"{"scene": 2.0, "what": [{}], "nodes": [{"mesh": 0}]}"#).is_ok());
         assert!(error("[]").starts_with("line 1"));

@@ -6,7 +6,7 @@ use super::surface::{self, BRIGHTEST};
 use super::texture_ref::texture;
 use super::todo::Todo;
 use super::{broken, derived};
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Place, Resources, Result, Warning, image, uri};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{
@@ -48,7 +48,7 @@ pub fn read(
     };
     scene.textures = root.textures.iter().map(texture).collect();
     derived::run(source, scene, &mut todo)?;
-    todo.tell(warnings);
+    todo.warn(warnings);
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use super::json::Whole;
 use crate::Error;
-use crate::told::there_are;
+use crate::wording::there_are;
 use std::fmt::Display;
 
 /// Returns the error for a reference beyond the `count` existing objects.

@@ -140,8 +140,8 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
         warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
     });
     if scene.is_none() {
-        tell_missing_scene(&root, &nodes, &mut model);
-        tell_other_scenes(&root, &nodes, &mut model);
+        warn_of_missing_scene(&root, &nodes, &mut model);
+        warn_of_other_scenes(&root, &nodes, &mut model);
     }
     let visible = tree.visible(&root);
     let mut builder = Builder {
@@ -155,7 +155,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     for &n in nodes.iter().filter(|n| visible[**n]) {
         builder.place(n, &mut model)?;
     }
-    builder.broken.tell(source.missing(), &mut model)?;
+    builder.broken.warn(source.missing(), &mut model)?;
     model.scene.up_axis = UpAxis::Y;
     material::read(&source, resources, &mut model.scene, &mut model.warnings)?;
     // Hidden cameras can still be used; hidden lights do not shine.
@@ -168,7 +168,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
 }
 
 /// Warns where the default scene, or any, is missing.
-fn tell_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
+fn warn_of_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
     let scenes = root.scenes.len();
     if scenes == 0 && !nodes.is_empty() {
         model.warn(Place::Path("scenes".into()), "there is none; all root nodes are shown");
@@ -180,7 +180,7 @@ fn tell_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
 }
 
 /// Warns of scenes with objects that the scene that is shown does not have.
-fn tell_other_scenes(root: &Root, shown: &[usize], model: &mut Model) {
+fn warn_of_other_scenes(root: &Root, shown: &[usize], model: &mut Model) {
     let mut lost = vec![false; root.nodes.len()];
     for (lost, node) in lost.iter_mut().zip(&root.nodes) {
         *lost = node.mesh.is_some() || !node.children.is_empty();

@@ -2,7 +2,7 @@
 
 use super::geometry::Geometry;
 use crate::model::count_infinite;
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;
 

@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn old_files_are_told_by_what_they_say_or_are_built_like() {
+    fn old_files_are_reported_by_what_they_say_or_are_built_like() {
         for (text, expected) in [
             (r#"{"asset": {"version": "1.0"}, "accessors": {}}"#, Some("1.0")),
             (r#"{"asset": {"version": 1.1, "profile": {}}, "nodes": {}}"#, Some("1.1")),

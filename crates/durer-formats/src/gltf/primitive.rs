@@ -4,7 +4,7 @@ use super::buffer::Source;
 use super::geometry::{Geometry, Influences};
 use super::json::{Primitive, Whole};
 use super::{draco, normals};
-use crate::told::{agreeing, counted};
+use crate::wording::{agreeing, counted};
 use crate::{Error, Result};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{Mesh, Topology};

@@ -67,7 +67,7 @@ impl Todo {
     }
 
     /// Adds the warnings about textures that are left out.
-    pub fn tell(&self, warnings: &mut Vec<Warning>) {
+    pub fn warn(&self, warnings: &mut Vec<Warning>) {
         for ((extension, what), (first, count)) in &self.left_out {
             let of = if *count > 1 { format!(" ({count} textures)") } else { String::new() };
             let place = Place::Path(format!("materials[{first}].extensions.{extension}"));

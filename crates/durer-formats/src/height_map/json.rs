@@ -2,7 +2,7 @@
 //! its `values`, `heights`, `elevation` or `data`; null is a missing height.
 
 use super::{Grid, HeightMapOptions, check_size};
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Limits, Place, Result, foreign};
 use serde_json::Value;
 

@@ -11,7 +11,7 @@ mod picture;
 mod points;
 mod table;
 
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Error, Limits, Place, Result, Warning, archive, gzip};
 use durer::scene::HeightField;
 

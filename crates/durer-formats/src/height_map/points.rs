@@ -1,7 +1,7 @@
 //! Lists of points x, y, z, and tables whose first row and column are coordinates: resampled to an even grid.
 
 use super::{Grid, HeightMapOptions, check_size};
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Error, Place, Result, Warning};
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
 
@@ -129,7 +129,7 @@ const NEEDED: &str =
 
 /// Interpolates scattered points on a grid; heights outside of their hull are missing.
 fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
-    let told = |message: String| Warning { place: Place::Whole, message };
+    let of_file = |message: String| Warning { place: Place::Whole, message };
     let whole: Vec<&[f64; 3]> = points.iter().filter(|p| p.iter().all(|v| v.is_finite())).collect();
     let spot = |p: &&[f64; 3]| Spot { at: Point2::new(p[0], p[1]), height: p[2] };
     let spots = whole.iter().map(spot).collect();
@@ -144,11 +144,11 @@ fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
     let mut warnings = Vec::new();
     if whole.len() < points.len() {
         let count = (points.len() - whole.len()) as u64;
-        warnings.push(told(agreeing(count, "{point has|points have} no place or height")));
+        warnings.push(of_file(agreeing(count, "{point has|points have} no place or height")));
     }
     if known < whole.len() {
         let words = "{point has the place of another|points have the place of others}; the last height counts";
-        warnings.push(told(agreeing((whole.len() - known) as u64, words)));
+        warnings.push(of_file(agreeing((whole.len() - known) as u64, words)));
     }
     let range = |axis: usize| {
         let values = || whole.iter().map(|p| p[axis]);
@@ -169,7 +169,7 @@ fn scattered(points: &[[f64; 3]], options: &HeightMapOptions) -> Result<Grid> {
     let heights = cells.map(height).collect();
     let message =
         format!("{known} points are put on a grid of {side} × {side}, by Delaunay triangles");
-    warnings.push(told(message));
+    warnings.push(of_file(message));
     let place = Some([x[0], x[1], y[0], y[1]]);
     let format = "CSV, points".to_owned();
     Ok(Grid { columns: side, rows: side, heights, place, format, warnings })

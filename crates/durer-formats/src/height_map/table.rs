@@ -2,7 +2,7 @@
 
 use super::{Grid, HeightMapOptions, check_size, points};
 use crate::text::{quote, utf8};
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Place, Result, Warning, number};
 
 /// Returns whether text begins with a number or the names of coordinates, after comments.

@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_or_too_much_is_told() {
+    fn what_is_missing_or_too_much_is_reported() {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
         assert!(error(&file([1, 2], 24, 0, &[], &[1, 2, 3, 4])).contains("too short"));
         assert!(error(&file([1, 2], 8, 1, &PALETTE, &[1, 1])).contains("cut off"));

@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_or_too_much_is_told() {
+    fn what_is_missing_or_too_much_is_reported() {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
         assert!(error(&file(3, 8, 0, &[], &[1, 2])).contains("cut off"));
         assert!(error(&file(11, 8, 0, &[], &[0x81, 1])).contains("cut off"));

@@ -63,8 +63,8 @@ fn set_colors(material: &mut Material, m: &Statements) {
 fn from_bytes(m: &Statements) -> Option<Statements> {
     let above = |color: &[f32; 3], limit: f32| color.iter().any(|v| *v > limit);
     // Emission may be above 1, and so may the ambient colour of a lamp's surface.
-    let told = [m.diffuse, m.specular];
-    told.iter().flatten().any(|color| above(color, BRIGHTEST)).then(|| {
+    let colors = [m.diffuse, m.specular];
+    colors.iter().flatten().any(|color| above(color, BRIGHTEST)).then(|| {
         let scale = |color: Option<[f32; 3]>| {
             color.map(|c| if above(&c, 1.0) { c.map(|v| v / 255.0) } else { c })
         };

@@ -32,7 +32,7 @@ pub(super) struct Notes {
 
 impl Notes {
     /// Adds warnings about all faults found.
-    pub fn tell(&self, model: &mut Model) {
+    pub fn warn(&self, model: &mut Model) {
         for (named, message) in [
             (
                 &self.opacity,

@@ -3,7 +3,7 @@
 use super::corners::{Corner, NONE};
 use super::parse::{Parsed, Run};
 use super::smooth;
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place, polygon};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{Instance, Material, Mesh, Part, Topology};
@@ -18,7 +18,7 @@ pub(super) fn build(
     options: &ReadOptions,
 ) -> Result<Model> {
     let mut model = Model { format: "OBJ".to_owned(), ..Model::default() };
-    parsed.repairs.tell(&mut model);
+    parsed.repairs.warn(&mut model);
     mtl::load(&mut model, &parsed.libraries, &parsed.materials, resources, options);
     let origin = place::origin(&parsed.positions);
     let nothing_drawn =

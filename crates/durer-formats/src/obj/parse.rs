@@ -7,7 +7,7 @@ use super::corners::{Corner, Corners, NONE};
 use super::count::{Counts, is_off};
 use super::repairs::{Repairs, note};
 use crate::text::{self, Cursor, quote};
-use crate::told::{counted, there_are};
+use crate::wording::{counted, there_are};
 use crate::{Error, Limits, Place, Result};
 use durer::math::{DVec3, Vec2, Vec3};
 use element::Part;

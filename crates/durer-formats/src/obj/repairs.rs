@@ -1,7 +1,7 @@
 //! Faults of an OBJ file that cost only the element that contains them.
 
 use crate::text::Tally;
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Error, Model, Place, Result};
 
 /// Things that were left out or repaired.
@@ -30,7 +30,7 @@ pub(super) struct Repairs {
 
 impl Repairs {
     /// Adds one warning for each kind of repair.
-    pub fn tell(&self, model: &mut Model) {
+    pub fn warn(&self, model: &mut Model) {
         let quoted = format!("`{}`", self.unknown_word);
         let (corner, number) = (&self.bad_corner, &self.bad_number);
         for (tally, words, first) in [

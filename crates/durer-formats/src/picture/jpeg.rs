@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn transparent_parts_lie_on_white_and_that_is_told() {
+    fn transparent_parts_lie_on_white_and_that_is_reported() {
         let clear = Pixels::new(16, 16, [0, 0, 0, 0]);
         let (bytes, flattened) = written(&clear, &Encoding::default());
         assert!(flattened && worst(&Pixels::new(16, 16, [255; 4]), &bytes) <= 1);

@@ -2,7 +2,7 @@
 
 use super::header::{Element, Type};
 use crate::text::Cursor;
-use crate::told::{agreeing, counted};
+use crate::wording::{agreeing, counted};
 use crate::{Error, Place, Result};
 
 /// A source of values.

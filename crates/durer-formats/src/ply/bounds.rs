@@ -4,7 +4,7 @@ use super::body::Values;
 use super::header::{Header, Type};
 use super::names::Plan;
 use crate::text::Tally;
-use crate::told::there_are;
+use crate::wording::there_are;
 use crate::{Error, Limits, Result};
 
 /// Limits of vertex numbers and counts.

@@ -10,7 +10,7 @@ use super::vertices::Vertices;
 use crate::budget::MODEL;
 use crate::facets::Palette;
 use crate::obj::corners::{Corner, Corners, NONE};
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Limits, Place, Result};
 
 /// The edges so far.

@@ -8,7 +8,7 @@ use super::{splat, texture};
 use crate::facets::{self, Attributes};
 use crate::model::count_infinite;
 use crate::obj::corners::Corners;
-use crate::told::agreeing;
+use crate::wording::agreeing;
 use crate::{Error, Model, Place, ReadOptions, Resources, Result, place};
 use durer::math::DVec3;
 use durer::scene::{Instance, Mesh, Topology};

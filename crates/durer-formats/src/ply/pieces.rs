@@ -242,10 +242,10 @@ impl<R: Read + Seek> Pieces<R> {
         let (local, numbers) = localized(&triangles.indices);
         let positions = self.positions(&numbers)?;
         let count = positions.len();
-        let mut told = Model::default();
+        let mut noted = Model::default();
         let mut mesh = Mesh { positions, indices: Some(local), faces, ..Mesh::default() };
-        polygon::recut(&mut told, &mut mesh, &self.options.limits)?;
-        if mesh.positions.len() > count || !told.warnings.is_empty() {
+        polygon::recut(&mut noted, &mut mesh, &self.options.limits)?;
+        if mesh.positions.len() > count || !noted.warnings.is_empty() {
             let what = "a model in pieces with polygons that cross themselves".to_owned();
             let hint = "a larger budget of memory lets all of it be held".to_owned();
             return Err(Error::Unsupported { place: Place::Whole, what, hint });

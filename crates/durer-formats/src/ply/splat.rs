@@ -79,11 +79,11 @@ pub(super) fn discs(model: &mut Model, vertices: &Vertices, limits: &Limits) -> 
     mesh.indices = Some(indices);
     mesh.parts.push(whole(&mesh, model.scene.materials.len()));
     model.scene.materials.push(material());
-    tell(model, colors.len() - shown, broken.count);
+    warn(model, colors.len() - shown, broken.count);
     Ok(mesh)
 }
 
-fn tell(model: &mut Model, thin: usize, broken: u64) {
+fn warn(model: &mut Model, thin: usize, broken: u64) {
     let message = "Gaussian splats are shown as opaque discs, of one color from all sides";
     model.warn(Place::Whole, message);
     let words = format!("{{splat|splats}} of an opacity below {OPACITY} {{is|are}} left out");

@@ -217,10 +217,10 @@ mod tests {
             [x y] MEDIUMINT DEFAULT -5, `t` TEXT(20) NOT NULL DEFAULT 'it''s, (so)', n, d DATETIME DEFAULT (now()),
             /* , */ v REAL GENERATED ALWAYS AS (n * 2), w DOUBLE PRECISION AS (n) STORED, FOREIGN KEY (n) REFERENCES o(p))"#;
         let list = columns(sql).expect("a table");
-        let told: Vec<(&str, &str, Option<&str>)> =
+        let parts_read: Vec<(&str, &str, Option<&str>)> =
             list.iter().map(|c| (&c.name[..], &c.kind[..], c.default.as_deref())).collect();
         assert_eq!(
-            told,
+            parts_read,
             [
                 ("fid", "INTEGER", None),
                 ("my \"geom\"", "POINT", None),

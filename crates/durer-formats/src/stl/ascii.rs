@@ -4,7 +4,7 @@ use super::{add, check_limit, finished};
 use crate::last_digit::last_digit;
 use crate::model::count_infinite;
 use crate::text::{Cursor, Tally, quote};
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Limits, Model, Place, Result, number, place, polygon};
 use durer::math::DVec3;
 use durer::scene::{Mesh, Part};

@@ -4,7 +4,7 @@ use super::palette::Palette;
 use super::{HEADER, RECORD, add, check_limit, count_in_header, finished};
 use crate::budget::MODEL;
 use crate::model::count_infinite;
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Limits, Model, Place, ReadOptions, Result};
 use durer::math::{DVec3, Vec3};
 use durer::scene::{Mesh, Part};
@@ -72,23 +72,23 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Model> {
 /// Returns the triangles that are really there.
 fn records<'a>(model: &mut Model, data: &'a [u8], count: u32) -> Result<&'a [[u8; RECORD]]> {
     let (whole, rest) = data.as_chunks::<RECORD>();
-    let (said, there) = (count as usize, whole.len());
+    let (stated, there) = (count as usize, whole.len());
     let triangles = counted(u64::from(count), "triangle", "triangles");
-    if said > there {
+    if stated > there {
         let message = format!("the header counts {triangles}, the file has room for {there}");
         if there == 0 {
             return Err(Error::byte(80, message));
         }
         model.warn(Place::Byte(80), message + "; those were read");
-    } else if said < there && (said == 0 || rest.is_empty()) {
+    } else if stated < there && (stated == 0 || rest.is_empty()) {
         let message =
             format!("the header counts {triangles}, the file holds {there}; all were read");
         model.warn(Place::Byte(80), message);
-    } else if data.len() > said * RECORD {
-        let end = HEADER + said * RECORD;
+    } else if data.len() > stated * RECORD {
+        let end = HEADER + stated * RECORD;
         let words = "{byte after the last triangle was|bytes after the last triangle were} ignored";
-        model.warn_counted(Place::Byte(end as u64), (data.len() - said * RECORD) as u64, words);
-        return Ok(whole.get(..said).unwrap_or(whole));
+        model.warn_counted(Place::Byte(end as u64), (data.len() - stated * RECORD) as u64, words);
+        return Ok(whole.get(..stated).unwrap_or(whole));
     }
     Ok(whole)
 }
@@ -128,8 +128,8 @@ impl Facets {
         }
         self.infinite += count_infinite(&positions[before..]);
         let attribute = |r: &[u8; RECORD]| u16::from_le_bytes([r[48], r[49]]);
-        let telling = self.palette.telling();
-        let marked = |r: &[u8; RECORD]| attribute(r) & telling;
+        let marking = self.palette.marking_bits();
+        let marked = |r: &[u8; RECORD]| attribute(r) & marking;
         if colors.is_empty() && records.iter().fold(0, |any, r| any | marked(r)) == 0 {
             return;
         }

@@ -43,7 +43,7 @@ impl Palette {
     }
 
     /// Returns the attribute bits that mark facets with their own colours; one of them suffices.
-    pub fn telling(&self) -> u16 {
+    pub fn marking_bits(&self) -> u16 {
         if self.body.is_some() { u16::MAX } else { PAINTED }
     }
 

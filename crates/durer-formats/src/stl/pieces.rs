@@ -97,7 +97,7 @@ impl<R: Read + Seek> Pieces<R> {
         let mut found = Looked::default();
         let mut positions = std::mem::take(&mut self.positions);
         positions.resize(3 * count as usize, Vec3::ZERO);
-        let telling = self.palette.telling();
+        let marking = self.palette.marking_bits();
         // Few at a time stay in the cache.
         for corners in positions.chunks_mut(3 * SKIM as usize) {
             self.fill(corners.len() as u64 / 3)?;
@@ -106,7 +106,7 @@ impl<R: Read + Seek> Pieces<R> {
                 *to = vertices(record);
             }
             let marks = |any, r: &[u8; RECORD]| any | u16::from_le_bytes([r[48], r[49]]);
-            found.colored |= records.iter().fold(0, marks) & telling != 0;
+            found.colored |= records.iter().fold(0, marks) & marking != 0;
             found.infinite += count_infinite(corners);
         }
         self.positions = positions;

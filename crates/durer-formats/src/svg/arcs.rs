@@ -47,7 +47,7 @@ pub(super) fn as_curves(data: &str) -> Option<String> {
         let point = |abs: bool, x: f64, y: f64| {
             if abs { DVec2::new(x, y) } else { here + DVec2::new(x, y) }
         };
-        let mut tell = |letter: char, points: &[DVec2]| {
+        let mut write = |letter: char, points: &[DVec2]| {
             out.push(letter);
             points.iter().for_each(|p| {
                 // Writing to a string cannot fail.
@@ -58,51 +58,51 @@ pub(super) fn as_curves(data: &str) -> Option<String> {
             MoveTo { abs, x, y } => {
                 at = point(abs, x, y);
                 start = at;
-                tell('M', &[at]);
+                write('M', &[at]);
             }
             LineTo { abs, x, y } => {
                 at = point(abs, x, y);
-                tell('L', &[at]);
+                write('L', &[at]);
             }
             HorizontalLineTo { abs, x } => {
                 at.x = point(abs, x, 0.0).x;
-                tell('L', &[at]);
+                write('L', &[at]);
             }
             VerticalLineTo { abs, y } => {
                 at.y = point(abs, 0.0, y).y;
-                tell('L', &[at]);
+                write('L', &[at]);
             }
             CurveTo { abs, x1, y1, x2, y2, x, y } => {
                 at = point(abs, x, y);
-                tell('C', &[point(abs, x1, y1), point(abs, x2, y2), at]);
+                write('C', &[point(abs, x1, y1), point(abs, x2, y2), at]);
             }
             SmoothCurveTo { abs, x2, y2, x, y } => {
                 at = point(abs, x, y);
                 // An arc has no control point to continue from.
                 match was_arc {
-                    true => tell('C', &[here, point(abs, x2, y2), at]),
-                    false => tell('S', &[point(abs, x2, y2), at]),
+                    true => write('C', &[here, point(abs, x2, y2), at]),
+                    false => write('S', &[point(abs, x2, y2), at]),
                 }
             }
             Quadratic { abs, x1, y1, x, y } => {
                 at = point(abs, x, y);
-                tell('Q', &[point(abs, x1, y1), at]);
+                write('Q', &[point(abs, x1, y1), at]);
             }
             SmoothQuadratic { abs, x, y } => {
                 at = point(abs, x, y);
-                tell('T', &[at]);
+                write('T', &[at]);
             }
             EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
                 at = point(abs, x, y);
                 let (radii, turned) = (DVec2::new(rx, ry), x_axis_rotation.to_radians());
                 let ends = Ends { from: here, to: at, radii, turned, large: large_arc, sweep };
-                if curves(&ends, |points| tell('C', &points)).is_none() {
-                    tell('L', &[at]);
+                if curves(&ends, |points| write('C', &points)).is_none() {
+                    write('L', &[at]);
                 }
             }
             ClosePath { .. } => {
                 at = start;
-                tell('Z', &[]);
+                write('Z', &[]);
             }
         }
     }

@@ -123,10 +123,10 @@ impl<'a, 'i> Pending<'a, 'i> {
         &self,
         changes: &mut Changes<'a>,
         ids: &HashMap<&'a str, Node<'a, 'i>>,
-        told: &mut Vec<(usize, String)>,
+        notes: &mut Vec<(usize, String)>,
     ) {
         if self.later.is_filtered {
-            self.filter(changes, ids, told);
+            self.filter(changes, ids, notes);
         }
         if self.later.has_length {
             self.dashes(changes, ids);
@@ -135,13 +135,13 @@ impl<'a, 'i> Pending<'a, 'i> {
             self.size(changes, ids);
         }
         if !self.later.transform.is_empty() {
-            self.transform(changes, ids, told);
+            self.transform(changes, ids, notes);
         }
         if self.later.is_marked {
             self.mark(changes, ids);
         }
         if let Some((value, at)) = &self.later.clip {
-            self.clip(value, *at, changes, ids, told);
+            self.clip(value, *at, changes, ids, notes);
         }
     }
 
@@ -170,7 +170,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         &self,
         changes: &mut Changes<'a>,
         ids: &HashMap<&'a str, Node<'a, 'i>>,
-        told: &mut Vec<(usize, String)>,
+        notes: &mut Vec<(usize, String)>,
     ) {
         let view = View { changes, ids };
         let said = |name: &str| self.later.transform.get(name).map(String::as_str);
@@ -186,7 +186,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         let Some(bounds) = self.bounds(&view, reference) else {
             let value = said("transform-box").unwrap_or_default();
             let name = self.name();
-            return told.push((at, format!("`transform-box` of `{name}` is `{value}`: its box is not known; its transform is ignored")));
+            return notes.push((at, format!("`transform-box` of `{name}` is `{value}`: its box is not known; its transform is ignored")));
         };
         let (corner, size) = (bounds.low.to_array(), bounds.size().to_array());
         let units = &self.around.units;
@@ -212,7 +212,7 @@ impl<'a, 'i> Pending<'a, 'i> {
             };
             match found {
                 Some(more) => map *= more,
-                None => told.push((
+                None => notes.push((
                     at,
                     format!(
                         "`{name}` of `{}` is `{}`: {}; it is ignored",
@@ -243,7 +243,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         at: usize,
         changes: &mut Changes<'a>,
         ids: &HashMap<&'a str, Node<'a, 'i>>,
-        told: &mut Vec<(usize, String)>,
+        notes: &mut Vec<(usize, String)>,
     ) {
         let view = View { changes, ids };
         let shape = Shape::parse(value);
@@ -257,7 +257,7 @@ impl<'a, 'i> Pending<'a, 'i> {
             } else {
                 "it must be a shape as `circle(10px at 5px 5px)`, or `url(#…)`"
             };
-            return told
+            return notes
                 .push((at, format!("`clip-path` of `{name}` is `{value}`: {why}; it is ignored")));
         };
         let mut number = changes.definitions.len();
@@ -279,7 +279,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         &self,
         changes: &mut Changes<'a>,
         ids: &HashMap<&'a str, Node<'a, 'i>>,
-        told: &mut Vec<(usize, String)>,
+        notes: &mut Vec<(usize, String)>,
     ) {
         let view = View { changes, ids };
         let value = view.value(self.node, "filter").filter(|value| value.contains("url("));
@@ -290,13 +290,13 @@ impl<'a, 'i> Pending<'a, 'i> {
         let at = self.node.range().start;
         let name = self.name();
         if let Some(id) = filters::links(value).find(missing) {
-            told.push((at, format!("`filter` of `{name}` is `{}`: there is no filter with the id `{}`; it is ignored", shown(value), shown(id))));
+            notes.push((at, format!("`filter` of `{name}` is `{}`: there is no filter with the id `{}`; it is ignored", shown(value), shown(id))));
             let rest = filters::without_links(value, |id| missing(&id));
             return set(changes, self.node, "filter", Some(rest).filter(|rest| !rest.is_empty()));
         }
         let mut filters = filters::links(value).filter_map(|id| ids.get(id));
         if !filters.all(|filter| filters::shows_source(*filter)) {
-            told.push((at, format!("`{name}` is left out: its filter `{}` shows none of its colours, and filters are not drawn", shown(value))));
+            notes.push((at, format!("`{name}` is left out: its filter `{}` shows none of its colours, and filters are not drawn", shown(value))));
             set(changes, self.node, "display", Some("none".to_owned()));
         }
     }

@@ -1,6 +1,6 @@
 //! The fonts that text is set in.
 
-use super::Told;
+use super::Notes;
 use crate::Place;
 use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
@@ -119,21 +119,21 @@ fn bytes(face: &fontdb::FaceInfo) -> Option<(&[u8], u32)> {
 }
 
 /// Chooses fonts by family and style; warns about fonts that are not available.
-pub(super) fn resolver(told: &Told) -> FontResolver<'_> {
+pub(super) fn resolver(notes: &Notes) -> FontResolver<'_> {
     let fallback = FontResolver::default_fallback_selector();
     FontResolver {
         select_font: Box::new(move |font, database| {
             let id = select(font, database);
             if let Some(face) = id.and_then(|id| database.face(id)) {
-                let tell = |message| told.tell(Place::Whole, message);
-                replaced(font, face).into_iter().for_each(tell);
+                let add = |message| notes.add(Place::Whole, message);
+                replaced(font, face).into_iter().for_each(add);
             }
             id
         }),
         select_fallback: Box::new(move |letter, used, database| {
             let id = fallback(letter, used, database);
             if id.is_none() {
-                told.miss(letter);
+                notes.miss(letter);
             }
             id
         }),

@@ -144,15 +144,15 @@ impl Drawing {
             return Err(Error::line(1, 0, message));
         }
         let mut charge = options.limits.work.charge(TREE, cost(&document))?;
-        let told = Told::new(options.limits.decoded_bytes);
-        let prepared = prepared(&document, 0, &told, false)?;
+        let notes = Notes::new(options.limits.decoded_bytes);
+        let prepared = prepared(&document, 0, &notes, false)?;
         let tree = {
             let usvg_options = usvg::Options {
                 font_family: options.fonts.default_family(),
                 font_size: FONT_SIZE,
                 fontdb: options.fonts.database(),
-                font_resolver: fonts::resolver(&told),
-                image_href_resolver: pictures::resolver(options, &told),
+                font_resolver: fonts::resolver(&notes),
+                image_href_resolver: pictures::resolver(options, &notes),
                 ..usvg::Options::default()
             };
             let amended = prepared.document()?;
@@ -166,8 +166,8 @@ impl Drawing {
         if options.fonts.is_empty() && document.descendants().any(|n| n.has_tag_name(TEXT)) {
             warnings.push(warning("text is left out: there are no fonts"));
         }
-        let (told, letters) = told.take();
-        warnings.extend(told);
+        let (noted, letters) = notes.take();
+        warnings.extend(noted);
         warnings.extend(fonts::missing_letters(&tree, letters).map(warning));
         let at = document.text_pos_at(document.root_element().range().start);
         let place = Place::Line(at.row.into(), at.col.into());
@@ -217,7 +217,7 @@ fn warning(message: impl Into<String>) -> Warning {
 
 /// Messages from within usvg, and the facts that usvg's callbacks need.
 #[derive(Debug)]
-struct Told {
+struct Notes {
     heard: Mutex<Heard>,
     /// Number of levels of elements that recursion may still enter.
     levels: AtomicUsize,
@@ -237,7 +237,7 @@ struct Heard {
     read: pictures::Read,
 }
 
-impl Told {
+impl Notes {
     fn new(bytes: u64) -> Self {
         let heard = Mutex::default();
         Self { heard, levels: AtomicUsize::new(0), bytes_left: AtomicU64::new(bytes) }
@@ -248,7 +248,7 @@ impl Told {
         self.heard.lock().unwrap_or_else(|e| e.into_inner())
     }
 
-    fn tell(&self, place: Place, message: String) {
+    fn add(&self, place: Place, message: String) {
         let mut heard = self.heard();
         if heard.said.insert(message.clone()) {
             heard.messages.push(Warning { place, message });
@@ -314,7 +314,7 @@ impl Prepared {
 fn prepared(
     document: &roxmltree::Document<'_>,
     above: usize,
-    told: &Told,
+    notes: &Notes,
     is_within: bool,
 ) -> Result<Prepared> {
     check_arcs(document)?;
@@ -322,10 +322,10 @@ fn prepared(
     let mut warnings = passed_over(document);
     let lines = lines::Lines::new(document.input_text());
     let at = |offset: usize| lines.at(offset);
-    let pictures = told.heard().pictures.len();
+    let pictures = notes.heard().pictures.len();
     let amended = amend::amended(document, pictures)?;
     warnings.extend(amended.warnings);
-    told.heard().pictures.extend(
+    notes.heard().pictures.extend(
         amended.pictures.into_iter().map(|(href, offset)| pictures::Picture {
             href,
             place: lines.place(offset),
@@ -341,7 +341,7 @@ fn prepared(
         })?,
         _ => references::check(document, above, &|node| at(node.range().start))?,
     };
-    told.set_levels(levels);
+    notes.set_levels(levels);
     Ok(prepared)
 }
 

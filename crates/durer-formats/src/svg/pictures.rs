@@ -1,6 +1,6 @@
 //! The pictures of a drawing: in it, beside it, drawings themselves.
 
-use super::{ReadOptions, Told, fonts, prepared, resolved, source};
+use super::{Notes, ReadOptions, fonts, prepared, resolved, source};
 use crate::image::Orientation;
 use crate::{Found, Limits, Place, Result, png, uri};
 use durer::target::Pixels;
@@ -32,22 +32,22 @@ pub(super) type Key = (String, bool, usize);
 pub(super) type Read = BTreeMap<Key, ImageKind>;
 
 /// Returns the resolver of pictures, which looks them up in the drawing's list.
-pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
+pub(super) fn resolver<'a>(options: &ReadOptions<'a>, notes: &'a Notes) -> ImageHrefResolver<'a> {
     let options = options.clone();
     ImageHrefResolver {
         resolve_data: Box::new(|_, _, _| None),
         resolve_string: Box::new(move |key, usvg_options| {
             let number = key.strip_prefix(LISTED)?.parse().ok()?;
-            let picture = told.picture(number)?;
-            let key = (picture.href.clone(), picture.is_within, told.levels());
-            if let Some(found) = told.read_before(&key) {
+            let picture = notes.picture(number)?;
+            let key = (picture.href.clone(), picture.is_within, notes.levels());
+            if let Some(found) = notes.read_before(&key) {
                 return Some(found);
             }
-            let found = kind(&picture, &options, usvg_options, told);
+            let found = kind(&picture, &options, usvg_options, notes);
             found
-                .inspect(|kind| told.keep_read(key, kind.clone()))
+                .inspect(|kind| notes.keep_read(key, kind.clone()))
                 .map_err(|why| {
-                    told.tell(
+                    notes.add(
                         picture.place.clone(),
                         format!("image `{}` is left out: {why}", name(&picture.href)),
                     )
@@ -71,10 +71,10 @@ fn kind(
     picture: &Picture,
     options: &ReadOptions<'_>,
     usvg_options: &usvg::Options<'_>,
-    told: &Told,
+    notes: &Notes,
 ) -> std::result::Result<ImageKind, String> {
-    let bytes = bytes(picture, options, told)?;
-    let limits = Limits { decoded_bytes: told.bytes_left(), ..options.limits.clone() };
+    let bytes = bytes(picture, options, notes)?;
+    let limits = Limits { decoded_bytes: notes.bytes_left(), ..options.limits.clone() };
     match bytes.as_slice() {
         // A text, perhaps with a mark or in two bytes a letter, or compressed.
         [b'<' | b' ' | b'\n' | b'\r' | b'\t', ..]
@@ -83,7 +83,7 @@ fn kind(
         | [0xff, 0xfe, ..]
         | [0, b'<', ..]
         | [0x1f, 0x8b, ..] => {
-            within(&bytes, picture, options, usvg_options, told).map(ImageKind::SVG)
+            within(&bytes, picture, options, usvg_options, notes).map(ImageKind::SVG)
         }
         [b'\x89', b'P', b'N', b'G', ..] => {
             check(&bytes, &limits)?;
@@ -93,7 +93,7 @@ fn kind(
             check(&bytes, &limits)?;
             Ok(ImageKind::JPEG(Arc::new(bytes)))
         }
-        _ => as_png(&bytes, &limits, told)
+        _ => as_png(&bytes, &limits, notes)
             .map(|png| ImageKind::PNG(Arc::new(png)))
             .map_err(|e| e.to_string()),
     }
@@ -110,7 +110,7 @@ fn check(bytes: &[u8], limits: &Limits) -> std::result::Result<(), String> {
 fn bytes(
     picture: &Picture,
     options: &ReadOptions<'_>,
-    told: &Told,
+    notes: &Notes,
 ) -> std::result::Result<Vec<u8>, String> {
     let href = picture.href.trim();
     let limit = options.limits.decoded_bytes;
@@ -126,7 +126,7 @@ fn bytes(
     let path = uri::path(href)?;
     let Found { bytes, note } = options.resources.find(&path, limit)?;
     if let Some(note) = note {
-        told.tell(picture.place.clone(), format!("image `{}`: {note}", name(href)));
+        notes.add(picture.place.clone(), format!("image `{}`: {note}", name(href)));
     }
     Ok(bytes)
 }
@@ -159,9 +159,9 @@ fn plain_data(href: &str) -> String {
 
 /// Returns a picture upright, as a PNG: usvg measures only some kinds of files, and these as they are
 /// stored.
-fn as_png(bytes: &[u8], limits: &Limits, told: &Told) -> Result<Vec<u8>> {
+fn as_png(bytes: &[u8], limits: &Limits, notes: &Notes) -> Result<Vec<u8>> {
     let image = crate::image::decode(bytes, "", limits)?;
-    told.take_bytes(image.data.len() as u64 * 4);
+    notes.take_bytes(image.data.len() as u64 * 4);
     let pixels =
         Orientation::of(bytes).turned(Pixels::from_data(image.width, image.height, image.data)?);
     let mut out = Vec::new();
@@ -175,30 +175,30 @@ fn within(
     picture: &Picture,
     options: &ReadOptions<'_>,
     usvg_options: &usvg::Options<'_>,
-    told: &Told,
+    notes: &Notes,
 ) -> std::result::Result<usvg::Tree, String> {
-    let around = told.levels();
+    let around = notes.levels();
     let tree = || {
         let text = source::text(bytes, &options.limits)?;
         let levels = around + super::references::IMAGE;
         let document = super::parse(&text)?;
-        let prepared = prepared(&document, levels, told, true)?;
+        let prepared = prepared(&document, levels, notes, true)?;
         for warning in &prepared.warnings {
-            told.tell(picture.place.clone(), format!("image `{}`: {warning}", name(&picture.href)));
+            notes.add(picture.place.clone(), format!("image `{}`: {warning}", name(&picture.href)));
         }
         let inner = usvg::Options {
             font_family: usvg_options.font_family.clone(),
             font_size: usvg_options.font_size,
             fontdb: options.fonts.database(),
-            font_resolver: fonts::resolver(told),
-            image_href_resolver: resolver(options, told),
+            font_resolver: fonts::resolver(notes),
+            image_href_resolver: resolver(options, notes),
             ..usvg::Options::default()
         };
         let amended = prepared.document()?;
         resolved(|| usvg::Tree::from_xmltree(amended.as_ref().unwrap_or(&document), &inner))
     };
     let tree = tree();
-    told.set_levels(around);
+    notes.set_levels(around);
     tree.map_err(|why| format!("it is a drawing: {why}"))
 }
 

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_encodings_are_told() {
+    fn wrong_encodings_are_reported() {
         assert!(of(&declared("klingon", b"")).unwrap_err().contains("`klingon` is not known"));
         assert!(of(&declared("Shift_JIS", b"\xff")).unwrap_err().contains("Shift_JIS"));
         assert!(of(b"<svg>\xe4").unwrap_err().contains("UTF-8"));

@@ -92,9 +92,9 @@ fn angles_and_sizes_of_view() {
     ] {
         let model = optics(kind, content);
         assert_eq!(model.scene.cameras, []);
-        let told = model.warnings[0].to_string();
-        assert!(told.starts_with("line 3, column ") && told.contains(why), "{told}");
-        assert!(told.ends_with("; the camera is left out"), "{told}");
+        let messages = model.warnings[0].to_string();
+        assert!(messages.starts_with("line 3, column ") && messages.contains(why), "{messages}");
+        assert!(messages.ends_with("; the camera is left out"), "{messages}");
     }
 }
 
@@ -157,6 +157,6 @@ fn lights_that_show_nothing_are_left_out() {
     assert_eq!(lamp("point", "<color>0 0 0</color>", "").scene.lights, []);
     let unknown = lamp("area", "", "");
     assert_eq!(unknown.scene.lights, []);
-    let told = unknown.warnings[0].to_string();
-    assert!(told.contains("1 light is of no known kind"), "{told}");
+    let messages = unknown.warnings[0].to_string();
+    assert!(messages.contains("1 light is of no known kind"), "{messages}");
 }

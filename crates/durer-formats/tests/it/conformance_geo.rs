@@ -25,13 +25,13 @@ fn malformed_geojson_is_refused_or_repaired_and_told() {
     ] {
         let bytes =
             std::fs::read(data.join(format!("malformed/synthetic/{name}.geojson"))).expect("file");
-        let told = match read_all(&bytes, name) {
+        let messages = match read_all(&bytes, name) {
             Err(e) => format!("error: {e}"),
             Ok((_, warnings)) => {
                 warnings.first().map_or("read".to_owned(), |w| format!("warning: {w}"))
             }
         };
-        assert!(told.starts_with(expected), "{name}: {told}");
+        assert!(messages.starts_with(expected), "{name}: {messages}");
     }
 }
 

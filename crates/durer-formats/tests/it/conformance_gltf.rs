@@ -365,8 +365,8 @@ fn files_of_the_validator_are_refused_or_harmless() {
                 assert!(structural.is_none(), "{}: {structural:?}", path.display());
                 let known = |c: &String| HARMLESS.iter().any(|(h, _)| h == c);
                 let unknown = codes.iter().find(|c| !known(c));
-                let told = !model.warnings.is_empty();
-                assert!(told || unknown.is_none(), "{}: {unknown:?}", path.display());
+                let reported = !model.warnings.is_empty();
+                assert!(reported || unknown.is_none(), "{}: {unknown:?}", path.display());
             }
         }
     }

@@ -170,8 +170,8 @@ fn frames_that_need_grids_are_refused_by_name() {
     for (code, name) in
         [(4267, "NAD27"), (21781, "CH1903"), (28992, "Amersfoort"), (26715, "NAD27")]
     {
-        let told = Crs::parse(&format!("EPSG:{code}")).expect_err("refused");
-        assert!(told.contains(&format!("is on the datum {name}, and its shift")), "{told}");
+        let messages = Crs::parse(&format!("EPSG:{code}")).expect_err("refused");
+        assert!(messages.contains(&format!("is on the datum {name}, and its shift")), "{messages}");
     }
     let definition = |datum: &str, more: &str| {
         format!(
@@ -180,10 +180,10 @@ fn frames_that_need_grids_are_refused_by_name() {
         )
     };
     for datum in ["North_American_1927", "MGI_1901", "European_1950_ED77", "D_CH1903"] {
-        let told = Crs::parse(&definition(datum, "")).expect_err("refused");
+        let messages = Crs::parse(&definition(datum, "")).expect_err("refused");
         assert!(
-            told.contains(&format!("the position of its datum {datum} is not known")),
-            "{told}"
+            messages.contains(&format!("the position of its datum {datum} is not known")),
+            "{messages}"
         );
     }
     let shifted = definition("WGS_1984", ",TOWGS84[1,2,3,0,0,0,0]");

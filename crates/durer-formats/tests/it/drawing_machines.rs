@@ -66,7 +66,7 @@ fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
         assert!(!ended, "{line}");
         match (letter, number as u32) {
             ('G', 0 | 1) => {
-                assert_eq!(modes, [21, 90], "the units are told first");
+                assert_eq!(modes, [21, 90], "the units are messages first");
                 for &(letter, value) in &words[1..] {
                     match letter {
                         'X' => at.x = value,

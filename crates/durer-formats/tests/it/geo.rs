@@ -40,8 +40,11 @@ fn a_line_that_is_cut_off_is_not_read_on() {
     let line = "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Point\",\"coordinates\":[1,2]}}\n";
     for cut in [&line[..line.len() - 4], &line[..24], &line[..49]] {
         let text = [line, line, line, cut, "\n", line, line].concat();
-        let told = error(GeoFormat::GeoJson, text.as_bytes());
-        assert!(told.starts_with("line 4, ") || told.starts_with("line 5, column 1:"), "{told}");
+        let messages = error(GeoFormat::GeoJson, text.as_bytes());
+        assert!(
+            messages.starts_with("line 4, ") || messages.starts_with("line 5, column 1:"),
+            "{messages}"
+        );
     }
     // Documents of several lines may precede others.
     let spread = line.replace(':', ":\n ");
@@ -55,12 +58,12 @@ fn a_line_that_is_cut_off_is_not_read_on() {
 fn numbers_follow_the_grammar_of_json() {
     let point = |x: &str| format!("{{\"type\":\"Point\",\"coordinates\":[{x},2]}}");
     for x in ["01", "-01", "00", "1.", "-.5", "1.e5", ".5", "+1", "1e", "-Infinity", "-"] {
-        let told = error(GeoFormat::GeoJson, point(x).as_bytes());
+        let messages = error(GeoFormat::GeoJson, point(x).as_bytes());
         assert!(
-            told.contains("not a number of JSON") || told.contains("a number is expected"),
-            "{x}: {told}"
+            messages.contains("not a number of JSON") || messages.contains("a number is expected"),
+            "{x}: {messages}"
         );
-        assert!(told.starts_with("line 1, column 32: "), "{x}: {told}");
+        assert!(messages.starts_with("line 1, column 32: "), "{x}: {messages}");
     }
     for (x, value) in [("0", 0.0), ("-0.5", -0.5), ("10", 10.0), ("0e1", 0.0), ("1E+2", 100.0)] {
         let read = features(GeoFormat::GeoJson, point(x).as_bytes());
@@ -166,9 +169,9 @@ fn errors_of_geojson_say_where() {
 }
 
 #[test]
-fn repairs_are_told() {
+fn repairs_are_reported() {
     let polygon = |rings: &str| format!("{{\"type\":\"Polygon\",\"coordinates\":[{rings}]}}");
-    for (text, rings, told) in [
+    for (text, rings, messages) in [
         (
             polygon("[[0,0],[4,0],[4,4]]"),
             1,
@@ -179,7 +182,7 @@ fn repairs_are_told() {
     ] {
         let (features, warnings) = read_all(text.as_bytes(), "").expect("read");
         assert!(matches!(&features[0].geometry, Some(Geometry::Polygon(r)) if r.len() == rings));
-        assert!(warnings.iter().any(|w| w.to_string().contains(told)), "{warnings:?}");
+        assert!(warnings.iter().any(|w| w.to_string().contains(messages)), "{warnings:?}");
     }
 }
 
@@ -396,8 +399,8 @@ fn uses_of_svg_show_shapes_elsewhere() {
 }
 
 #[test]
-fn uses_of_svg_that_cannot_be_followed_are_told() {
-    for (content, told) in [
+fn uses_of_svg_that_cannot_be_followed_are_reported() {
+    for (content, messages) in [
         ("<use/>", "needs an `href`"),
         ("<use href='#a'/>", "`use` of `#a`, which is not there"),
         ("<use href='b.svg#a'/>", "is in another file"),
@@ -411,7 +414,7 @@ fn uses_of_svg_that_cannot_be_followed_are_told() {
     ] {
         let (shapes, warnings) = svg_shapes(content);
         assert!(shapes.is_empty(), "{content}: {shapes:?}");
-        assert!(warnings.len() == 1 && warnings[0].contains(told), "{content}: {warnings:?}");
+        assert!(warnings.len() == 1 && warnings[0].contains(messages), "{content}: {warnings:?}");
     }
     let ring = "<use id='a' href='#b'/><use id='b' href='#c'/><use id='c' href='#a'/>";
     let (shapes, warnings) = svg_shapes(ring);
@@ -421,8 +424,8 @@ fn uses_of_svg_that_cannot_be_followed_are_told() {
         .map(|i| format!("<g id='g{}'><use href='#g{i}'/><use href='#g{i}'/></g>", i + 1))
         .collect();
     let text = format!("<svg><defs><path id='g0' d=''/>{doubled}</defs><use href='#g40'/></svg>");
-    let told = error(GeoFormat::Svg, text.as_bytes());
-    assert!(told.contains("the length of the text that `use` shows is 671"), "{told}");
+    let messages = error(GeoFormat::Svg, text.as_bytes());
+    assert!(messages.contains("the length of the text that `use` shows is 671"), "{messages}");
 }
 
 #[test]
@@ -445,8 +448,8 @@ fn lengths_of_svg_have_units() {
     }
     for length in ["50%", "2em", "3 4", "1furlong"] {
         let (found, warnings) = wide(length);
-        let told = format!("`width` is `{length}`; a number, or one in px,");
-        assert!(found.is_none() && warnings[0].contains(&told), "{length}: {warnings:?}");
+        let messages = format!("`width` is `{length}`; a number, or one in px,");
+        assert!(found.is_none() && warnings[0].contains(&messages), "{length}: {warnings:?}");
     }
 }
 
@@ -476,8 +479,8 @@ fn declarations_of_svg_follow_css() {
 }
 
 #[test]
-fn bad_svg_is_told() {
-    for (text, told) in [
+fn bad_svg_is_reported() {
+    for (text, messages) in [
         ("<svg><g>", "line 1, column 9: the file ends within `g`"),
         ("<svg></g></svg>", "`</svg>` is expected, not `</g>`"),
         ("<svg/></svg>", "`svg` ends, but has not begun"),
@@ -488,9 +491,9 @@ fn bad_svg_is_told() {
         ("", "there is no svg element"),
     ] {
         let found = error(GeoFormat::Svg, text.as_bytes());
-        assert!(found.contains(told), "{text}: {found}");
+        assert!(found.contains(messages), "{text}: {found}");
     }
-    for (shape, count, told) in [
+    for (shape, count, messages) in [
         ("<polygon points='0,0 1,0 1,1 2'/>", 1, "an x without a y"),
         ("<rect width='-1' height='1'/>", 0, "`width` is -1"),
         ("<circle r='-1'/>", 0, "`r` is -1"),
@@ -499,7 +502,7 @@ fn bad_svg_is_told() {
     ] {
         let (shapes, warnings) = svg_shapes(shape);
         assert_eq!((shapes.len(), warnings.len()), (count, 1), "{shape}: {warnings:?}");
-        assert!(warnings[0].contains(told), "{shape}: {warnings:?}");
+        assert!(warnings[0].contains(messages), "{shape}: {warnings:?}");
     }
     // A million curves have 16 positions each, and no more are kept.
     let long = format!("<path d='M0 0{}'/>", "q1 0 1 1".repeat((1 << 20) + 1));
@@ -544,7 +547,7 @@ fn files_with_nothing_in_them_have_no_features() {
 
 #[test]
 fn numbers_of_coordinate_systems_fit_32_bits() {
-    for (text, told) in [
+    for (text, messages) in [
         (
             "SRID=99999999999;POINT(1 2)",
             "the SRID 99999999999 must be from -2147483648 to 2147483647",
@@ -553,7 +556,7 @@ fn numbers_of_coordinate_systems_fit_32_bits() {
         ("SRID=x;POINT(1 2)", "the number of a coordinate system is expected, not `x`"),
     ] {
         let found = error(GeoFormat::Wkt, text.as_bytes());
-        assert!(found.contains(told), "{found}");
+        assert!(found.contains(messages), "{found}");
     }
 }
 
@@ -732,49 +735,58 @@ fn errors_and_warnings_name_the_feature() {
     let (open, whole) = ("[[0,0],[4,0],[4,4]]", "[[0,0],[4,0],[4,4],[0,0]]");
     let all = [ring("", "a", whole), ring("", "b", open), ring("\"id\":7,", "c", open)];
     let (_, warnings) = read_all(all.join("\n").as_bytes(), "").expect("read");
-    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    assert!(told[0].starts_with("line 2, column 89, feature 2 (Name b): the ring"), "{told:?}");
-    assert!(told[1].contains(", feature 3 (id 7): the ring is not closed"), "{told:?}");
+    let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        messages[0].starts_with("line 2, column 89, feature 2 (Name b): the ring"),
+        "{messages:?}"
+    );
+    assert!(messages[1].contains(", feature 3 (id 7): the ring is not closed"), "{messages:?}");
 
     let collection = |features: &str| {
         format!(r#"{{"type":"FeatureCollection","crs":{{"a":1}},"features":[{features}]}}"#)
     };
     let broken = ring("\"id\":\"x\",", "d", "[[0,0],[4]]");
     let text = collection(&format!("{},{broken}", all[0]));
-    let told = error(GeoFormat::GeoJson, text.as_bytes());
-    assert!(told.contains(", feature 2 (id x): a position needs"), "{told}");
+    let messages = error(GeoFormat::GeoJson, text.as_bytes());
+    assert!(messages.contains(", feature 2 (id x): a position needs"), "{messages}");
     let (_, warnings) = read_all(collection(&all[1]).as_bytes(), "").expect("read");
-    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    assert!(told[0].contains("column 35: the member crs"), "not of a feature: {told:?}");
-    assert!(told[1].contains("feature 1 (Name b)"), "{told:?}");
+    let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(messages[0].contains("column 35: the member crs"), "not of a feature: {messages:?}");
+    assert!(messages[1].contains("feature 1 (Name b)"), "{messages:?}");
     // Behind the features there is none.
-    let told = error(
+    let messages = error(
         GeoFormat::GeoJson,
         text.replace("[4]]", "[4,0],[4,4],[0,0]]").replace("]}", "];").as_bytes(),
     );
-    assert!(!told.contains("feature 3"), "{told}");
+    assert!(!messages.contains("feature 3"), "{messages}");
 
     let kml = "<kml><Placemark id='p1'><Point><coordinates>1,2</coordinates></Point></Placemark>\n\
         <Placemark><name>Weg</name><LineString><coordinates>1,2</coordinates></LineString></Placemark>\n\
         <Placemark id='p3'><Point><coordinates>1,b</coordinates></Point></Placemark></kml>";
     let (_, warnings) = read_all(kml.as_bytes(), "").expect("read");
-    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    assert!(told[0].contains(", feature 2 (name Weg): a line needs two positions"), "{told:?}");
-    assert!(told[1].contains(", feature 3 (id p3): 1 coordinate is not a number"), "{told:?}");
+    let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        messages[0].contains(", feature 2 (name Weg): a line needs two positions"),
+        "{messages:?}"
+    );
+    assert!(
+        messages[1].contains(", feature 3 (id p3): 1 coordinate is not a number"),
+        "{messages:?}"
+    );
     let gpx = "<gpx><wpt lat='1' lon='2'/><rte><name>R</name><rtept lat='1' lon='2'/></rte></gpx>";
     let (_, warnings) = read_all(gpx.as_bytes(), "").expect("read");
     assert!(warnings[0].to_string().contains("feature 2 (name R): a line needs"), "{warnings:?}");
 
     let topology = r#"{"type":"Topology","arcs":[[[0,0],[1,1]]],"objects":{"o":{"type":"GeometryCollection","geometries":[
         {"type":"LineString","arcs":[0]},{"type":"LineString","id":"k","arcs":[9]}]}}}"#;
-    let told = read_all(topology.as_bytes(), "").expect_err("no arc").to_string();
+    let messages = read_all(topology.as_bytes(), "").expect_err("no arc").to_string();
     assert!(
-        told.starts_with(
+        messages.starts_with(
             "line 2, column 80, feature 2 (id k): there is no arc of this number: there is 1"
         ),
-        "{told}"
+        "{messages}"
     );
     let table = "name,wkt\nA,POINT (1 2)\nB,POINT (1)\n";
-    let told = error(GeoFormat::Csv, table.as_bytes());
-    assert!(told.starts_with("line 3, feature 2: a position of 2 numbers"), "{told}");
+    let messages = error(GeoFormat::Csv, table.as_bytes());
+    assert!(messages.starts_with("line 3, feature 2: a position of 2 numbers"), "{messages}");
 }

@@ -2,7 +2,7 @@
 
 use durer_formats::geo::{Geometry, read_all};
 
-fn told(text: &[u8], name: &str) -> (Vec<(String, usize)>, Vec<String>) {
+fn messages(text: &[u8], name: &str) -> (Vec<(String, usize)>, Vec<String>) {
     let (features, warnings) = read_all(text, name).expect("read");
     let kinds =
         features.iter().filter_map(|f| f.geometry.as_ref()).map(|g| (g.name().to_owned(), g.len()));
@@ -19,7 +19,7 @@ MULTICURVE ((0 0, 1 1), CIRCULARSTRING (0 0, 1 1, 2 0))
 MULTISURFACE (((0 0, 1 0, 1 1, 0 0)), CURVEPOLYGON (CIRCULARSTRING (0 0, 4 0, 0 0)))
 CIRCULARSTRING EMPTY
 CURVEPOLYGON Z EMPTY";
-    let (kinds, warnings) = told(text.as_bytes(), "a.wkt");
+    let (kinds, warnings) = messages(text.as_bytes(), "a.wkt");
     let expected = [
         ("LineString", 65),
         ("LineString", 67),
@@ -45,7 +45,7 @@ fn surfaces_of_wkt_become_polygons() {
 TIN Z (((0 0 1, 1 0 1, 0 1 1, 0 0 1)), ((1 0 1, 1 1 1, 0 1 1, 1 0 1)))
 POLYHEDRALSURFACE (((0 0, 1 0, 0 1, 0 0)))
 TIN EMPTY";
-    let (kinds, warnings) = told(text.as_bytes(), "a.wkt");
+    let (kinds, warnings) = messages(text.as_bytes(), "a.wkt");
     let expected = [("Polygon", 3), ("MultiPolygon", 6), ("MultiPolygon", 3), ("MultiPolygon", 0)];
     assert_eq!(kinds, expected.map(|(kind, count)| (kind.to_owned(), count)));
     assert_eq!(warnings, Vec::<String>::new());
@@ -80,7 +80,7 @@ fn curves_of_wkb_are_those_of_wkt() {
         &triangle,
         &tin,
     ];
-    let (kinds, warnings) = told(&all.concat(), "a.wkb");
+    let (kinds, warnings) = messages(&all.concat(), "a.wkb");
     let expected = [
         ("LineString", 65),
         ("LineString", 66),

@@ -137,7 +137,7 @@ POLYGON ((11 20.5, 11 20, 10 20, 12 20.5, 11 20.5))\nPOINT (11 21)\n"
             && reader.next_feature().expect("read").is_none()
     );
     assert!(open("c").err().expect("none").to_string().contains("no layer c; it has b, a"));
-    for (from, to, told) in [
+    for (from, to, messages) in [
         (
             "[[0,1]]",
             "[[0,9]]",
@@ -152,7 +152,7 @@ POLYGON ((11 20.5, 11 20, 10 20, 12 20.5, 11 20.5))\nPOINT (11 21)\n"
         ("\"scale\":", "\"skale\":", "needs scale and translate"),
     ] {
         let told_now = error(TOPOLOGY.replacen(from, to, 1).as_bytes(), "");
-        assert!(told_now.contains(told), "{told_now}");
+        assert!(told_now.contains(messages), "{told_now}");
     }
 }
 
@@ -170,7 +170,7 @@ fn written_topologies_share_arcs() {
 }
 
 #[test]
-fn an_arc_that_is_told_very_often_is_refused() {
+fn an_arc_that_is_reported_very_often_is_refused() {
     let arc = vec!["[0,0]"; 12_000].join(",");
     let many = vec!["0"; 10_000].join(",");
     let lines = format!("{{\"type\":\"LineString\",\"arcs\":[{many}]}}");
@@ -289,8 +289,9 @@ fn waypoints_routes_and_tracks_of_gpx_are_features() {
         ]
     );
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    let told = Writer::new(GeoFormat::Gpx, Vec::new()).write(&features[0]).expect_err("only read");
-    assert!(told.to_string().contains("only read"));
+    let messages =
+        Writer::new(GeoFormat::Gpx, Vec::new()).write(&features[0]).expect_err("only read");
+    assert!(messages.to_string().contains("only read"));
 }
 
 #[test]
@@ -332,7 +333,7 @@ fn fields_have_kinds_and_examples() {
 
 #[test]
 fn foreign_formats_are_named() {
-    for (bytes, told) in [
+    for (bytes, messages) in [
         (&b"SQLite format 3\0rest"[..], "an SQLite database that is not a GeoPackage"),
         (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile"),
         (b"II*\0", "GeoTIFF"),
@@ -342,7 +343,10 @@ fn foreign_formats_are_named() {
         (b"what", "not a known format"),
     ] {
         let message = error(bytes, "a.bin");
-        assert!(message.contains(told) && message.contains("GeoPackage, Shapefile"), "{message}");
+        assert!(
+            message.contains(messages) && message.contains("GeoPackage, Shapefile"),
+            "{message}"
+        );
     }
     // A file's name does not decide its format.
     assert!(error(b"PK\x03\x04", "").contains("ZIP"));

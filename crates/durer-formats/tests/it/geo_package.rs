@@ -137,9 +137,9 @@ fn damaged_files_are_refused_with_a_place() {
     assert!(error(&with(20, &[99]), None).starts_with("byte 20: pages keep more"));
     assert_eq!(error(&with(100, &[10]), None), "byte 0: a page of a table is expected");
     // The last child of the first page is the page itself.
-    let told = error(&with(108, &[0, 0, 0, 1]), None);
+    let messages = error(&with(108, &[0, 0, 0, 1]), None);
     let ways = ["nested too deep", "lead to each other without end", "lie over each other"];
-    assert!(ways.iter().any(|way| told.contains(way)), "{told}");
+    assert!(ways.iter().any(|way| messages.contains(way)), "{messages}");
     assert!(error(&WIDE[..1536], None).contains("is needed, but the file ends after 3"));
     assert!(error(b"SQLite", None).contains("the header of an SQLite database is expected"));
 }
@@ -154,11 +154,11 @@ impl Resources for Left {
 }
 
 #[test]
-fn changes_in_another_file_are_told() {
+fn changes_in_another_file_are_reported() {
     for name in ["a.gpkg-wal", "a.gpkg-journal"] {
         let beside = Beside { name: "a.gpkg", resources: &Left(name), layer: None };
-        let told = Reader::with(GeoFormat::GeoPackage, WIDE, &beside).err().expect("refused");
-        assert!(told.to_string().starts_with(name), "{told}");
+        let messages = Reader::with(GeoFormat::GeoPackage, WIDE, &beside).err().expect("refused");
+        assert!(messages.to_string().starts_with(name), "{messages}");
     }
     let beside = Beside { name: "a.gpkg", resources: &Left("b.gpkg-wal"), layer: Some("lines") };
     assert!(Reader::with(GeoFormat::GeoPackage, WIDE, &beside).is_ok());
@@ -187,9 +187,9 @@ fn what_is_written_is_the_same_to_a_file_and_to_a_stream() {
     let mut file = file.finish(&[]).expect("memory");
     assert_eq!(file.stream_position().expect("memory"), finished.out.len() as u64);
     assert!(file.into_inner() == finished.out);
-    let told: Vec<String> = finished.warnings.iter().map(ToString::to_string).collect();
+    let messages: Vec<String> = finished.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
-        told,
+        messages,
         ["1 fields are texts after being numbers; their first values stay numbers: m"]
     );
     let (again, ..) = layer(&finished.out, Some("layer_gpkg_x"));

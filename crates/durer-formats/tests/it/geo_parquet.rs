@@ -10,14 +10,14 @@ const SEED: &[u8] = include_bytes!("../../../../fuzz/seeds/geoparquet/seed.parqu
 fn files_need_the_feature() {
     use durer_formats::geo::Writer;
     assert_eq!(GeoFormat::of_content(SEED), Some(GeoFormat::GeoParquet));
-    let told = read_all(SEED, "").expect_err("refused").to_string();
+    let messages = read_all(SEED, "").expect_err("refused").to_string();
     assert!(
-        told.contains("GeoParquet by this build") && told.contains("--features geoparquet"),
-        "{told}"
+        messages.contains("GeoParquet by this build") && messages.contains("--features geoparquet"),
+        "{messages}"
     );
     let writer = Writer::new(GeoFormat::GeoParquet, Vec::new());
-    let told = writer.finish(&[]).expect_err("refused").to_string();
-    assert!(told.contains("--features geoparquet"), "{told}");
+    let messages = writer.finish(&[]).expect_err("refused").to_string();
+    assert!(messages.contains("--features geoparquet"), "{messages}");
 }
 
 #[cfg(feature = "geoparquet")]
@@ -91,10 +91,10 @@ mod read_and_written {
 
     #[test]
     fn broken_files_say_what_is_wrong() {
-        let told = |bytes: &[u8]| read_all(bytes, "a.parquet").expect_err("broken").to_string();
-        assert!(told(&SEED[..SEED.len() - 1]).contains("it is cut short"));
-        assert!(told(b"PAR1").contains("it has no footer"));
-        assert!(told(b"PAR1\xff\xff\xff\x00PAR1").contains("longer than it can be"));
+        let messages = |bytes: &[u8]| read_all(bytes, "a.parquet").expect_err("broken").to_string();
+        assert!(messages(&SEED[..SEED.len() - 1]).contains("it is cut short"));
+        assert!(messages(b"PAR1").contains("it has no footer"));
+        assert!(messages(b"PAR1\xff\xff\xff\x00PAR1").contains("longer than it can be"));
         let with = |from: &[u8], to: &[u8]| {
             let mut bytes = SEED.to_vec();
             let at = bytes.windows(from.len()).rposition(|w| w == from).expect("it is there");
@@ -102,11 +102,11 @@ mod read_and_written {
             bytes
         };
         assert!(
-            told(&with(b"\"encoding\": \"WKB\"", b"\"encoding\": \"XYZ\""))
+            messages(&with(b"\"encoding\": \"WKB\"", b"\"encoding\": \"XYZ\""))
                 .contains("encoding `XYZ`")
         );
         assert!(
-            told(&with(b"\"primary_column\": \"g", b"\"primary_column\": \"h"))
+            messages(&with(b"\"primary_column\": \"g", b"\"primary_column\": \"h"))
                 .contains("there is no column heometry")
         );
         // Endlessly nested groups: a list of columns, each with one child.
@@ -115,6 +115,6 @@ mod read_and_written {
         footer.push(0);
         let length = (footer.len() as u32).to_le_bytes();
         let deep = [&b"PAR1"[..], &footer, &length, b"PAR1"].concat();
-        assert!(told(&deep).contains("nests columns too deep"), "{}", told(&deep));
+        assert!(messages(&deep).contains("nests columns too deep"), "{}", messages(&deep));
     }
 }

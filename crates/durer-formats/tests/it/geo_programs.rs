@@ -205,7 +205,7 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
             "line 2, column 3, feature 2: 2 features",
         ),
     ];
-    for (format, text, told) in cases {
+    for (format, text, messages) in cases {
         let mut reader = Reader::new(format, text.as_bytes()).expect("a reader");
         reader.skip_failures();
         let mut count = 0;
@@ -214,7 +214,7 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
         }
         let warnings: Vec<String> = reader.warnings().iter().map(ToString::to_string).collect();
         assert_eq!((count, reader.skipped()), (2, 2), "{format}: {warnings:?}");
-        assert!(warnings[0].starts_with(told), "{format}: {warnings:?}");
+        assert!(warnings[0].starts_with(messages), "{format}: {warnings:?}");
         assert!(reader.next_feature().expect("the end").is_none());
         assert_eq!(reader.warnings().len(), warnings.len(), "{format}: reported once");
         let mut strict = Reader::new(format, text.as_bytes()).expect("a reader");
@@ -229,9 +229,9 @@ fn features_that_cannot_be_read_are_left_out_on_request() {
 
 #[test]
 fn rows_that_decimal_commas_split_are_refused() {
-    let told = error("name,lon,lat\nA,8.5,47\nB,8,5,47,2\n".as_bytes(), "a.csv");
+    let messages = error("name,lon,lat\nA,8.5,47\nB,8,5,47,2\n".as_bytes(), "a.csv");
     let start = "line 3, feature 2: the row has 5 values for 3 columns, as if its numbers had decimal commas";
-    assert!(told.starts_with(start), "{told}");
+    assert!(messages.starts_with(start), "{messages}");
     for text in [
         "lon;lat\n8,5;47,2\n",
         "lon,lat\n\"8,5\",\"47,2\"\n",
@@ -288,8 +288,8 @@ fn feature_sets_of_arcgis_are_read() {
         assert!(wkt(&features).contains(expected), "{geometry}: {}", wkt(&features));
     }
     let points = r#"{"attributes":{"name":"Bern"},"geometry":{"x":1,"y":true}}"#;
-    let told = error(set(head, points).as_bytes(), "a.json");
-    assert!(told.contains("feature 1 (name Bern): a finite number is expected"), "{told}");
+    let messages = error(set(head, points).as_bytes(), "a.json");
+    assert!(messages.contains("feature 1 (name Bern): a finite number is expected"), "{messages}");
     let curve = r#"{"geometry":{"curveRings":[]}}"#;
     assert!(error(set(head, curve).as_bytes(), "a.json").contains("returnTrueCurves=false"));
     let cut = set(head, "").replace("}", "").replace("]", "],\"exceededTransferLimit\":true}");

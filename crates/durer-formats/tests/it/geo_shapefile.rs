@@ -66,8 +66,8 @@ fn geometries_of_one_kind_go_there_and_back() {
             5,
         ),
     ] {
-        let (files, told) = written(&parsed(text), System::default()).expect("written");
-        assert_eq!(told, Vec::<String>::new());
+        let (files, warned) = written(&parsed(text), System::default()).expect("written");
+        assert_eq!(warned, Vec::<String>::new());
         assert_eq!((files.0["a.shp"][32], files.0["a.shx"][32]), (kind, kind), "{text}");
         let (features, code, warnings) = read(&files);
         let again = wkt(&features);
@@ -77,10 +77,10 @@ fn geometries_of_one_kind_go_there_and_back() {
         assert_eq!(names, ["a.cpg", "a.dbf", "a.shp", "a.shx"]);
     }
     let mixed = written(&parsed("POINT (1 2)\nLINESTRING (0 0, 1 1)"), System::default());
-    let told = mixed.err().expect("refused").to_string();
+    let warned = mixed.err().expect("refused").to_string();
     assert!(
-        told.contains("1 features of points and 1 features of lines is not supported"),
-        "{told}"
+        warned.contains("1 features of points and 1 features of lines is not supported"),
+        "{warned}"
     );
 }
 
@@ -90,8 +90,8 @@ fn fields_and_the_coordinate_system_go_there_and_back() {
 {"type":"Feature","id":4,"properties":{"name":"Größe","long_name_of_a_field":1,"long_name_of_another":2,"x":-1.25e-3,"b":true,"d":"2024-02-29","j":[1]},"geometry":{"type":"Point","coordinates":[1,2]}},
 {"type":"Feature","properties":{"name":null,"x":7,"b":false},"geometry":null}]}"#;
     let features = read_all(text.as_bytes(), "").expect("read").0;
-    let (files, told) = written(&features, System::of_code(32632)).expect("written");
-    assert!(told[0].contains("2 names of fields are cut"), "{told:?}");
+    let (files, warned) = written(&features, System::of_code(32632)).expect("written");
+    assert!(warned[0].contains("2 names of fields are cut"), "{warned:?}");
     assert!(files.0["a.prj"].starts_with(b"PROJCS[\"WGS_1984_UTM_Zone_32N\""));
     let (again, code, warnings) = read(&files);
     assert_eq!((code, warnings), (Some(32632), Vec::new()));
@@ -152,7 +152,7 @@ fn texts_are_decoded_as_told() {
 }
 
 #[test]
-fn what_is_missing_or_broken_is_told() {
+fn what_is_missing_or_broken_is_reported() {
     let (mut files, _) =
         written(&parsed("POINT (1 2)\nPOINT (3 4)"), System::default()).expect("written");
     let dbf = files.0.remove("a.dbf").expect("a table");
@@ -186,8 +186,8 @@ fn what_is_missing_or_broken_is_told() {
     let beside = Beside { name: "a.shp", resources: &files, layer: None };
     let mut reader =
         Reader::with(GeoFormat::Shapefile, &files.0["a.shp"][..], &beside).expect("a reader");
-    let told = reader.next_feature().expect_err("a shape of no kind").to_string();
-    assert!(told.starts_with("byte 108, feature 1: a shape of the kinds"), "{told}");
+    let warned = reader.next_feature().expect_err("a shape of no kind").to_string();
+    assert!(warned.starts_with("byte 108, feature 1: a shape of the kinds"), "{warned}");
 }
 
 #[test]

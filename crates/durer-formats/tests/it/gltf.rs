@@ -75,7 +75,7 @@ pub fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn text_and_binary_are_told_apart() {
+fn text_and_binary_are_reported_apart() {
     assert!(gltf::sniff(br#" {"asset": {}}"#) && gltf::sniff(b"glTF\x02\0\0\0"));
     assert!(!gltf::sniff(b"{\"type\": \"FeatureCollection\"}") && !gltf::sniff(b"solid asset"));
     let json = format!(
@@ -118,8 +118,8 @@ fn a_file_without_scenes_draws_its_roots() {
     .unwrap();
     let names: Vec<&str> = model.scene.instances.iter().map(|i| i.name.as_str()).collect();
     assert_eq!(names, ["root", "child"]);
-    let told: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
-    assert_eq!(told, ["scenes: there is none; all root nodes are shown"]);
+    let messages: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(messages, ["scenes: there is none; all root nodes are shown"]);
 }
 
 #[test]
@@ -137,17 +137,17 @@ fn a_default_scene_that_is_missing_gives_way_to_what_there_is() {
 }
 
 #[test]
-fn other_scenes_are_told() {
-    let told = |scenes: &str| {
+fn other_scenes_are_reported() {
+    let messages = |scenes: &str| {
         let members = r#""nodes": [{"mesh": 0, "children": [1]}, {"mesh": 0}, {"mesh": 0}, {"name": "camera"}]"#;
         let model = read(&triangle(&format!(r#""scenes": [{scenes}], {members}"#))).unwrap();
         model.warnings.iter().map(ToString::to_string).collect::<String>()
     };
     let one = "scenes: 1 further scene has objects that are not shown; --scene chooses it";
-    assert_eq!(told(r#"{"nodes": [0]}, {"nodes": [2]}"#), one);
+    assert_eq!(messages(r#"{"nodes": [0]}, {"nodes": [2]}"#), one);
     let two = "scenes: 2 further scenes have objects that are not shown; --scene chooses one";
-    assert_eq!(told(r#"{"nodes": [0]}, {"nodes": [0, 2]}, {"nodes": [2]}"#), two);
-    assert_eq!(told(r#"{"nodes": [0, 2]}, {"nodes": [2]}, {"nodes": [3]}, {}"#), "");
+    assert_eq!(messages(r#"{"nodes": [0]}, {"nodes": [0, 2]}, {"nodes": [2]}"#), two);
+    assert_eq!(messages(r#"{"nodes": [0, 2]}, {"nodes": [2]}, {"nodes": [3]}, {}"#), "");
 }
 
 #[test]
@@ -166,8 +166,8 @@ fn scenes_are_chosen_by_name_or_number() {
     for (scene, name) in [(None, "c"), (Some("scene0"), "a"), (Some("0"), "b"), (Some("2"), "c")] {
         assert_eq!(shown(scene).unwrap(), name, "{scene:?}");
     }
-    let told = shown(Some("3")).unwrap_err().to_string();
-    assert_eq!(told, "scenes: there is no scene `3`: scene0, 0, scene2");
+    let messages = shown(Some("3")).unwrap_err().to_string();
+    assert_eq!(messages, "scenes: there is no scene `3`: scene0, 0, scene2");
 }
 
 #[test]
@@ -235,8 +235,11 @@ fn accessors_without_data_are_no_larger_than_those_with_data() {
         read(&file(&triangle_bytes(), &members))
     };
     assert_eq!(of(3).unwrap().scene.triangle_count(), 1);
-    let told = of(100_000_000).unwrap_err().to_string();
-    assert!(told.contains("an accessor of 100000000 elements has no `bufferView`"), "{told}");
+    let messages = of(100_000_000).unwrap_err().to_string();
+    assert!(
+        messages.contains("an accessor of 100000000 elements has no `bufferView`"),
+        "{messages}"
+    );
 }
 
 #[test]
@@ -283,9 +286,9 @@ fn accessors_may_be_interleaved_sparse_and_normalized() {
     // The sparse index 2 becomes 3, which is out of range.
     let wrong = text.replace("%01%00%02%00", "%01%00%03%00");
     let model = read(&wrong).unwrap();
-    let told = model.warnings[1].to_string();
-    assert!(told.starts_with("accessors[0].sparse.indices: "), "{told}");
-    assert!(told.ends_with("meshes[0].primitives[0] is left out"), "{told}");
+    let messages = model.warnings[1].to_string();
+    assert!(messages.starts_with("accessors[0].sparse.indices: "), "{messages}");
+    assert!(messages.ends_with("meshes[0].primitives[0] is left out"), "{messages}");
 }
 
 #[test]
@@ -388,9 +391,9 @@ fn what_has_a_corner_that_is_no_vertex_is_left_out() {
         let left_out =
             if word.starts_with('1') { "is left out" } else { "are left out, the first" };
         let why = format!("index {first} is vertex {} of 3", indices[first]);
-        let told = model.warnings.last().unwrap().to_string();
+        let messages = model.warnings.last().unwrap().to_string();
         let all = format!("{word} with a corner that is not a vertex {left_out}: {why}");
-        assert_eq!(told, format!("meshes[0].primitives[0]: {all}"));
+        assert_eq!(messages, format!("meshes[0].primitives[0]: {all}"));
     }
 }
 
@@ -411,15 +414,15 @@ fn extensions_are_refused_or_warned_about() {
 }
 
 #[test]
-fn gltf_1_is_told_by_name() {
-    let told =
+fn gltf_1_is_reported_by_name() {
+    let messages =
         "asset.version: glTF 1.0 is not supported; export the model as glTF 2.0, or convert it";
     for old in [
         r#"{"asset": {"version": "1.0"}}"#,
         r#"{"asset": {"version": "1.0"}, "accessors": {}, "scenes": {}}"#,
         r#"{"accessors": {"a": {}}, "asset": {"generator": "x"}}"#,
     ] {
-        assert!(error(old).starts_with(told), "{}", error(old));
+        assert!(error(old).starts_with(messages), "{}", error(old));
     }
     let mut file = binary("{}", b"");
     file[4] = 1;
@@ -493,26 +496,26 @@ fn references_stay_in_the_folder() {
             "materials": [{{"emissiveTexture": {{"index": 0}}}}]"#
         ))
     };
-    let asked = Asked::default();
-    let read = |uri: &str| gltf::read(file(uri).as_bytes(), &asked, &ReadOptions::default());
+    let requested = Asked::default();
+    let read = |uri: &str| gltf::read(file(uri).as_bytes(), &requested, &ReadOptions::default());
     let model = read("./maps/a%20b%2epng").unwrap();
-    assert_eq!(*asked.0.borrow(), ["maps/a b.png"]);
+    assert_eq!(*requested.0.borrow(), ["maps/a b.png"]);
     assert!(model.warnings[1].to_string().contains("cannot read `./maps/a%20b%2epng`: no"));
     for bad in
         ["../a.png", "http://h/a.png", "/a.png", "a/%2e%2e/%2e%2e/b", "%5c%5ch%5ca", "c:\\\\a"]
     {
         let model = read(bad).unwrap();
-        let told = model.warnings[1].to_string();
+        let messages = model.warnings[1].to_string();
         assert!(
-            told.starts_with("images[0]: cannot read") && told.ends_with("drawn white"),
-            "{told}"
+            messages.starts_with("images[0]: cannot read") && messages.ends_with("drawn white"),
+            "{messages}"
         );
         assert_eq!(model.scene.triangle_count(), 1);
     }
-    assert_eq!(asked.0.borrow().len(), 1);
+    assert_eq!(requested.0.borrow().len(), 1);
     for (written, path) in [("maps\\\\a.png", "maps/a.png"), ("100%.png", "100%.png")] {
         read(written).unwrap();
-        assert_eq!(asked.0.borrow().last().unwrap(), path);
+        assert_eq!(requested.0.borrow().last().unwrap(), path);
     }
 }
 

@@ -193,9 +193,9 @@ fn textures_of_layers_count_by_their_mean() {
     assert!((material.clearcoat_roughness - 0.1).abs() < 1e-6);
     // An sRGB value of 188 is half of the light.
     assert!((material.sheen_color - Vec3::splat(0.5)).abs().max_element() < 0.005);
-    let told: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+    let messages: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
-        told,
+        messages,
         [
             "materials[0].extensions.KHR_materials_clearcoat: its texture is not laid on, its mean is taken (4 textures)",
             "materials[0].extensions.KHR_materials_clearcoat: its texture of normals is left out (2 textures)",
@@ -334,11 +334,11 @@ fn webp_is_taken_before_what_stands_in_for_it() {
     assert_eq!(shown(webp), (vec![[4, 5, 6, 255]], vec![]));
     let fallback = r#"{"source": 0, "extensions": {"KHR_texture_basisu": {"source": 1}}}"#;
     assert_eq!(shown(fallback), (vec![[1, 2, 3, 255]], vec![]));
-    let (data, told) = shown(r#"{"extensions": {"KHR_texture_basisu": {"source": 1}}}"#);
-    assert!(data.is_empty() && told.len() == 1, "{told:?}");
+    let (data, messages) = shown(r#"{"extensions": {"KHR_texture_basisu": {"source": 1}}}"#);
+    assert!(data.is_empty() && messages.len() == 1, "{messages:?}");
     assert!(
-        told[0].starts_with("textures[0]: KTX 2 (KHR_texture_basisu) is not decoded"),
-        "{told:?}"
+        messages[0].starts_with("textures[0]: KTX 2 (KHR_texture_basisu) is not decoded"),
+        "{messages:?}"
     );
     let wrong = text(r#"{"source": 0, "extensions": {"EXT_texture_webp": {"source": 7}}}"#);
     assert!(
@@ -350,8 +350,8 @@ fn webp_is_taken_before_what_stands_in_for_it() {
 }
 
 #[test]
-fn only_extensions_that_change_the_picture_are_told() {
-    let told = |name: &str| {
+fn only_extensions_that_change_the_picture_are_reported() {
+    let messages = |name: &str| {
         let scene = r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]"#;
         let used = format!(r#"{scene}, "extensionsUsed": ["{name}"]"#);
         let model = read(&triangle(&used)).unwrap();
@@ -360,7 +360,7 @@ fn only_extensions_that_change_the_picture_are_told() {
     for silent in
         ["VRMC_springBone", "KHR_physics_rigid_bodies", "EXT_structural_metadata", "MSFT_lod"]
     {
-        assert_eq!(told(silent), "", "{silent}");
+        assert_eq!(messages(silent), "", "{silent}");
     }
     for (name, effect) in [
         ("VRMC_materials_mtoon", "toon materials are drawn as ordinary ones"),
@@ -368,6 +368,6 @@ fn only_extensions_that_change_the_picture_are_told() {
         ("KHR_materials_anisotropy", "drawn without its effect"),
         ("ACME_new", "drawn without what it adds"),
     ] {
-        assert_eq!(told(name), format!("extensionsUsed: {name} is not read; {effect}"));
+        assert_eq!(messages(name), format!("extensionsUsed: {name} is not read; {effect}"));
     }
 }

@@ -126,9 +126,9 @@ fn cut_and_damaged_files_fail_alike() {
     let mut dangling = file.clone();
     dangling[file.len() - 2] = 1;
     let model = both(&dangling, &NoResources, &options).unwrap();
-    let told = model.warnings.last().unwrap().to_string();
-    assert!(told.contains("1 point with a corner that is not a vertex"), "{told}");
-    assert!(told.contains("index 59999 is vertex"), "{told}");
+    let messages = model.warnings.last().unwrap().to_string();
+    assert!(messages.contains("1 point with a corner that is not a vertex"), "{messages}");
+    assert!(messages.contains("index 59999 is vertex"), "{messages}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ const NEAR: &str = r#"{"attributes": {"POSITION": 0}}"#;
 const FAR: &str = r#"{"attributes": {"POSITION": 1}}"#;
 const BROKEN: &str = r#"{"attributes": {"POSITION": 0}, "indices": 2}"#;
 
-fn told(model: &Model) -> Vec<String> {
+fn messages(model: &Model) -> Vec<String> {
     model.warnings.iter().map(ToString::to_string).collect()
 }
 
@@ -33,10 +33,13 @@ fn without_a_buffer_the_rest_is_shown() {
     assert_eq!(model.scene.triangle_count(), 1);
     let why = "this source has no folder to look in";
     let left_out = "meshes[0].primitives[0] and 1 more primitive are left out";
-    assert_eq!(told(&model), [format!("buffers[1].uri: cannot read `far.bin`: {why}; {left_out}")]);
+    assert_eq!(
+        messages(&model),
+        [format!("buffers[1].uri: cannot read `far.bin`: {why}; {left_out}")]
+    );
     let nothing = read(&two_buffers(FAR, "")).unwrap_err().to_string();
     assert_eq!(nothing, format!("buffers[1].uri: cannot read `far.bin`: {why}"));
-    let unasked = told(&read(&two_buffers(NEAR, "")).unwrap());
+    let unasked = messages(&read(&two_buffers(NEAR, "")).unwrap());
     let end = "nothing that is shown needs it";
     assert_eq!(unasked, [format!("buffers[1].uri: cannot read `far.bin`: {why}; {end}")]);
 }
@@ -50,14 +53,14 @@ fn packed_views_and_instances_of_a_missing_buffer_are_left_out() {
     );
     let model = read(&packed).unwrap();
     assert_eq!(model.scene.triangle_count(), 1);
-    assert!(told(&model)[0].starts_with("buffers[1].uri: cannot read `far.bin`"), "{model:?}");
+    assert!(messages(&model)[0].starts_with("buffers[1].uri: cannot read `far.bin`"), "{model:?}");
     let instanced = two_buffers(NEAR, "").replace(
         r#""nodes": [{"mesh": 0}]"#,
         r#""nodes": [{"mesh": 0, "children": [1]}, {"mesh": 0, "extensions":
             {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}]"#,
     );
     let model = read(&instanced).unwrap();
-    assert_eq!((model.scene.instances.len(), told(&model).len()), (1, 1), "{model:?}");
+    assert_eq!((model.scene.instances.len(), messages(&model).len()), (1, 1), "{model:?}");
 }
 
 #[test]
@@ -66,7 +69,7 @@ fn a_broken_primitive_leaves_the_others() {
     assert_eq!(model.scene.triangle_count(), 1);
     let why = "meshes[0].primitives[1].indices: index 2 is vertex 3 of 3";
     let left_out = "meshes[0].primitives[1] and 1 more primitive are left out";
-    assert_eq!(told(&model)[0], format!("{why}; {left_out}"));
+    assert_eq!(messages(&model)[0], format!("{why}; {left_out}"));
     let both = read(&two_buffers(&[FAR, BROKEN].join(","), "")).unwrap_err().to_string();
     assert!(both.starts_with("buffers[1].uri: "), "the first error: {both}");
 }
@@ -85,13 +88,13 @@ impl Resources for Elsewhere {
 }
 
 #[test]
-fn files_of_another_name_are_told() {
+fn files_of_another_name_are_reported() {
     let images = r#", "images": [{"uri": "a.png"}], "textures": [{"source": 0}],
         "materials": [{"emissiveTexture": {"index": 0}}]"#;
     let text = two_buffers(FAR, images);
     let model = gltf::read(text.as_bytes(), &Elsewhere, &ReadOptions::default()).unwrap();
-    let told = told(&model);
-    assert_eq!(told[0], "buffers[1].uri: `far.bin` was FAR.bin");
-    assert_eq!(told[1], "images[0]: `a.png` was FAR.bin");
-    assert_eq!(told.len(), 3, "the picture is none: {told:?}");
+    let messages = messages(&model);
+    assert_eq!(messages[0], "buffers[1].uri: `far.bin` was FAR.bin");
+    assert_eq!(messages[1], "images[0]: `a.png` was FAR.bin");
+    assert_eq!(messages.len(), 3, "the picture is none: {messages:?}");
 }

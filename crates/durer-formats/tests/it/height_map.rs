@@ -114,7 +114,7 @@ fn coordinates_stand_in_the_first_row_and_column() {
 }
 
 #[test]
-fn tables_that_may_be_meant_otherwise_are_told() {
+fn tables_that_may_be_meant_otherwise_are_reported() {
     let long: String = (0..20).map(|i| format!("{i},{},{}\n", i * i, i % 3)).collect();
     let found = map(long.as_bytes(), "a.csv");
     assert!(found.warnings[0].message.contains("points x, y, z need a heading"), "{found:?}");
@@ -191,7 +191,7 @@ fn grey_pictures_are_heights() {
 }
 
 #[test]
-fn broken_files_are_told_where_and_what() {
+fn broken_files_are_reported_where_and_what() {
     for (bytes, expected) in [
         (&b""[..], "the file is empty"),
         (b"hello", "height maps are read from"),

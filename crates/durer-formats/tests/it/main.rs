@@ -31,4 +31,4 @@ mod shared;
 mod svg;
 mod svg_styles;
 mod threemf;
-mod told;
+mod wording;

@@ -232,8 +232,8 @@ fn decimal_commas_are_points() {
         let at = |p: &Vec3| scene.instances[0].world_from_mesh.transform_point3(p.as_dvec3());
         let found: Vec<_> = scene.meshes[0].positions.iter().map(|p| at(p).to_array()).collect();
         assert_eq!(found, expected, "{name}: {:?}", model.warnings);
-        let told = model.warnings.iter().any(|w| w.message.contains("decimal comma"));
-        assert!(told || name.ends_with("xyz"), "{name}: {:?}", model.warnings);
+        let messages = model.warnings.iter().any(|w| w.message.contains("decimal comma"));
+        assert!(messages || name.ends_with("xyz"), "{name}: {:?}", model.warnings);
     }
     let lists = read(b"1,2,3\n4,5,6\n7,8,9\n", "a.xyz").expect("a list");
     assert_eq!(lists.scene.meshes[0].positions[1], Vec3::new(4.0, 5.0, 6.0));

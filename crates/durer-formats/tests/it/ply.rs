@@ -212,7 +212,7 @@ fn corners_have_the_texture_coordinates_of_their_face() {
 }
 
 #[test]
-fn a_missing_picture_and_missing_coordinates_are_told() {
+fn a_missing_picture_and_missing_coordinates_are_reported() {
     let coords = format!("element face 1\n{FACE}property list uchar float texcoord\n");
     let data = "3 0 1 2 6 0 0 1 0 1 1\n";
     let gone = textured(&cube(&format!("comment TextureFile gone.png\n{coords}"), data));
@@ -248,7 +248,7 @@ fn several_pictures_by_their_numbers() {
 }
 
 #[test]
-fn what_is_not_drawn_is_told() {
+fn what_is_not_drawn_is_reported() {
     let head = "element polyline 2\nproperty list uchar int vertex_indices\nelement face 1\n\
                 property list uchar int polygon\nelement edge 1\nproperty int from\nelement camera 1\n\
                 property float view_px\nelement material 1\nproperty uchar diffuse_red\n";

@@ -102,7 +102,7 @@ impl Resources for OnePicture {
 }
 
 #[test]
-fn images_fill_their_frame_and_missing_ones_are_told() {
+fn images_fill_their_frame_and_missing_ones_are_reported() {
     let mut bytes = Vec::new();
     let image = Pixels::from_data(2, 1, vec![[255, 0, 0, 255], [0, 0, 255, 255]]).unwrap();
     png::write_color(&mut bytes, &image, png::Compression::Fast).unwrap();
@@ -112,17 +112,17 @@ fn images_fill_their_frame_and_missing_ones_are_told() {
         <image href="a.png" width="20" height="20" preserveAspectRatio="none"/>
         <image href="none.png" width="20" height="20"/></svg>"#;
     let drawing = Drawing::read(text, &options).unwrap();
-    let told = drawing.warnings()[0].to_string();
-    assert_eq!(told, "line 3, column 16: image `none.png` is left out: there is no such file");
+    let messages = drawing.warnings()[0].to_string();
+    assert_eq!(messages, "line 3, column 16: image `none.png` is left out: there is no such file");
     let (picture, _) = paint(&drawing);
     assert_eq!(picture.get(0, 0), Some([255, 0, 0, 255]), "no fading at the border");
     assert_eq!(picture.get(19, 19), Some([0, 0, 255, 255]));
 }
 
 #[test]
-fn text_without_fonts_is_told() {
-    let told = drawing("<text y='10'>A</text>").warnings()[0].to_string();
-    assert_eq!(told, "text is left out: there are no fonts");
+fn text_without_fonts_is_reported() {
+    let messages = drawing("<text y='10'>A</text>").warnings()[0].to_string();
+    assert_eq!(messages, "text is left out: there are no fonts");
 }
 
 #[test]
@@ -168,12 +168,12 @@ fn what_is_nested_deeply_is_left_out() {
     assert!(warnings[0].contains("200 levels deep"), "{warnings:?}");
 }
 
-fn told(body: &str) -> Vec<String> {
+fn messages(body: &str) -> Vec<String> {
     drawing(body).warnings().iter().map(ToString::to_string).collect()
 }
 
 #[test]
-fn values_that_cannot_be_used_are_told_with_their_place() {
+fn values_that_cannot_be_used_are_reported_with_their_place() {
     for (body, name, part) in [
         (
             "<rect width='9' height='9'\n stroke='blakc'/>",
@@ -196,13 +196,13 @@ fn values_that_cannot_be_used_are_told_with_their_place() {
         ("<g style='fill:reddd;x:y'/>", "`fill` of `g` is `reddd`", "a colour"),
         ("<style>g{stroke-width:-2}</style>", "`stroke-width` of `style`", "at least 0"),
     ] {
-        let found = told(body);
+        let found = messages(body);
         assert_eq!(found.len(), 1, "{body}: {found:?}");
         assert!(found[0].contains(name) && found[0].contains(part), "{body}: {found:?}");
         assert!(found[0].starts_with("line "), "{found:?}");
     }
     // A repeated value gives one warning.
-    assert_eq!(told("<g fill='x'/><g fill='x'/><g stroke='x'/>").len(), 2);
+    assert_eq!(messages("<g fill='x'/><g fill='x'/><g stroke='x'/>").len(), 2);
 }
 
 #[test]
@@ -211,9 +211,9 @@ fn values_that_mean_something_are_not_told() {
         <g fill='currentcolor' stroke='inherit' opacity='50%' stroke-dasharray='none' d='x'/>
         <rect x='1%' y='2em' width='auto' height='3mm' rx='auto'/><path d=''/><path d='none'/>
         <g fill='url(#a) none' stroke-dasharray='1,2 3' style='transform:none;cursor:help'/>";
-    assert_eq!(told(body), Vec::<String>::new());
+    assert_eq!(messages(body), Vec::<String>::new());
     assert_eq!(
-        told("<rect><animate fill='freeze' width='x'/></rect>").len(),
+        messages("<rect><animate fill='freeze' width='x'/></rect>").len(),
         1,
         "of the animation"
     );
@@ -238,7 +238,7 @@ fn rebeccapurple_is_a_color() {
         "<style>rect{fill:rebeccapurple}</style><rect width='20' height='20'/>",
     ] {
         assert_eq!(painted(body).get(10, 10), Some([0x66, 0x33, 0x99, 255]), "{body}");
-        assert_eq!(told(body), Vec::<String>::new());
+        assert_eq!(messages(body), Vec::<String>::new());
     }
 }
 
@@ -371,8 +371,11 @@ fn references_in_a_circle_are_refused() {
             + &shape("id='r' filter='blur(1) url(#f)'")
             + &shape("id='s' filter='url(#g)'"),
     ] {
-        let told = read(&body).expect_err(&body);
-        assert!(told.starts_with("line 2, column") && told.contains("go in a circle"), "{told}");
+        let messages = read(&body).expect_err(&body);
+        assert!(
+            messages.starts_with("line 2, column") && messages.contains("go in a circle"),
+            "{messages}"
+        );
     }
     // These are cut.
     for body in [
@@ -433,8 +436,9 @@ fn references_that_are_deep_are_refused() {
     for body in [chain(20_000), words(20_000)] {
         let text =
             format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{body}</svg>");
-        let told = Drawing::read(text.as_bytes(), &ReadOptions::default()).expect_err("too deep");
-        assert!(told.to_string().contains("more than 1024 levels deep"), "{told}");
+        let messages =
+            Drawing::read(text.as_bytes(), &ReadOptions::default()).expect_err("too deep");
+        assert!(messages.to_string().contains("more than 1024 levels deep"), "{messages}");
     }
     drawing(&chain(50));
     drawing(&words(50));
@@ -455,8 +459,9 @@ fn references_that_multiply_are_refused() {
         let body = doubling(40, element, property);
         let text =
             format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{body}</svg>");
-        let told = Drawing::read(text.as_bytes(), &ReadOptions::default()).expect_err("too many");
-        assert!(told.to_string().contains("followed more than 1000000 times"), "{told}");
+        let messages =
+            Drawing::read(text.as_bytes(), &ReadOptions::default()).expect_err("too many");
+        assert!(messages.to_string().contains("followed more than 1000000 times"), "{messages}");
         drawing(&doubling(6, element, property));
     }
 }
@@ -499,14 +504,15 @@ fn images_that_are_drawings_cannot_fill_the_stack() {
         (image(&circle.concat()), "go in a circle"),
         ("<path d='M0 0A1e30 1e30 0 0 0 1e30 1'/>".to_owned(), "farther than arcs can be drawn"),
     ] {
-        let told = told(&image(&body));
-        let told = told.iter().find(|told| told.contains(expected)).expect("a warning");
-        assert!(told.contains("is left out: it is a drawing: line 1, column"), "{told}");
+        let messages = messages(&image(&body));
+        let messages =
+            messages.iter().find(|messages| messages.contains(expected)).expect("a warning");
+        assert!(messages.contains("is left out: it is a drawing: line 1, column"), "{messages}");
     }
     // None is too deep by itself.
-    let deep = told(&groups(700, &image(&groups(700, rect))));
+    let deep = messages(&groups(700, &image(&groups(700, rect))));
     assert!(deep[0].contains("more than 1024 levels deep"), "{deep:?}");
     let many = image(&image(rect));
-    assert_eq!(told(&many), Vec::<String>::new());
+    assert_eq!(messages(&many), Vec::<String>::new());
     assert_eq!(painted(&many).get(4, 4), Some([0, 255, 0, 255]));
 }

@@ -10,10 +10,10 @@ fn draw_with(bytes: &[u8], fonts: &Fonts) -> (Pixels<[u8; 4]>, Vec<String>) {
     let options = ReadOptions { fonts, ..ReadOptions::default() };
     let drawing = Drawing::read(bytes, &options).unwrap();
     let mut canvas = Canvas::new(40, 40, Options::default()).unwrap();
-    let told = drawing.draw(&mut canvas, DAffine2::IDENTITY);
+    let messages = drawing.draw(&mut canvas, DAffine2::IDENTITY);
     let mut picture = Pixels::new(40, 40, [0; 4]);
     canvas.render(&mut picture).unwrap();
-    (picture, drawing.warnings().iter().chain(&told).map(ToString::to_string).collect())
+    (picture, drawing.warnings().iter().chain(&messages).map(ToString::to_string).collect())
 }
 
 fn document(body: &str) -> String {
@@ -28,8 +28,8 @@ fn draw(body: &str) -> (Pixels<[u8; 4]>, Vec<String>) {
 
 /// Returns a picture that is drawn without a warning.
 fn painted(body: &str) -> Pixels<[u8; 4]> {
-    let (picture, told) = draw(body);
-    assert_eq!(told, Vec::<String>::new(), "{body}");
+    let (picture, messages) = draw(body);
+    assert_eq!(messages, Vec::<String>::new(), "{body}");
     picture
 }
 
@@ -102,14 +102,14 @@ fn variables_stand_for_their_values() {
     ] {
         assert_eq!(painted(&body).get(20, 20), Some(LIME), "{body}");
     }
-    let (picture, told) = draw(&format!(
+    let (picture, messages) = draw(&format!(
         "<g fill='lime'>\n<rect style='--a:var(--b);--b:var(--a);fill:var(--a)' {RECT}/></g>"
     ));
     assert_eq!(picture.get(20, 20), Some(LIME), "as if nothing were said");
     assert!(
-        told[0].starts_with("line 2, column 7: `fill` of `rect`")
-            && told[0].contains("is undefined"),
-        "{told:?}"
+        messages[0].starts_with("line 2, column 7: `fill` of `rect`")
+            && messages[0].contains("is undefined"),
+        "{messages:?}"
     );
 }
 
@@ -158,13 +158,13 @@ fn geometry_may_be_said_in_css() {
     ] {
         assert_eq!(extent(&painted(body)), Some(expected), "{body}");
     }
-    let (picture, told) = draw("<style>rect{width:10}</style><rect width='30' height='30'/>");
+    let (picture, messages) = draw("<style>rect{width:10}</style><rect width='30' height='30'/>");
     assert_eq!(
         extent(&picture),
         Some([0, 0, 30, 30]),
         "lengths without units are none in style sheets"
     );
-    assert!(told[0].contains("needs a unit"), "{told:?}");
+    assert!(messages[0].contains("needs a unit"), "{messages:?}");
 }
 
 #[test]
@@ -188,10 +188,10 @@ fn transforms_may_be_said_in_css() {
     let group = "<g style='transform:scale(2);transform-box:fill-box;transform-origin:center'><rect x='15' y='15' width='4' height='4'/>
         <g transform='translate(15 15)'><rect x='6' y='6' width='4' height='4'/></g></g>";
     assert_eq!(extent(&painted(group)), Some([10, 10, 30, 30]));
-    let (_, told) = draw("<rect width='1' height='1'\nstyle='transform:rotateX(3deg)'/>");
+    let (_, messages) = draw("<rect width='1' height='1'\nstyle='transform:rotateX(3deg)'/>");
     assert!(
-        told[0].starts_with("line 2, column 1: `transform` of `rect` is `rotateX(3deg)`"),
-        "{told:?}"
+        messages[0].starts_with("line 2, column 1: `transform` of `rect` is `rotateX(3deg)`"),
+        "{messages:?}"
     );
 }
 
@@ -218,9 +218,9 @@ fn shapes_clip() {
     let of_attribute =
         "<g clip-path='circle(25% at 50% 50%) view-box'><rect width='40' height='40'/></g>";
     assert_eq!(extent(&painted(of_attribute)), Some([10, 10, 30, 30]));
-    let (picture, told) = draw(&rect("blob(3px)", ""));
+    let (picture, messages) = draw(&rect("blob(3px)", ""));
     assert_eq!(extent(&picture), Some([10, 10, 30, 30]));
-    assert!(told[0].contains("`clip-path` of `rect` is `blob(3px)`"), "{told:?}");
+    assert!(messages[0].contains("`clip-path` of `rect` is `blob(3px)`"), "{messages:?}");
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn dashes_are_measured_in_the_length_that_is_said() {
 }
 
 #[test]
-fn what_is_not_understood_is_told_with_its_line() {
+fn what_is_not_understood_is_reported_with_its_line() {
     for (body, expected) in [
         ("<style>\n@import url(a.css);</style>", "line 2, column 1: `@import` is ignored"),
         (
@@ -276,9 +276,12 @@ fn what_is_not_understood_is_told_with_its_line() {
         ),
         ("<g style='mask:linear-gradient(red,blue)'/>", "only masks that are elements are drawn"),
     ] {
-        let (_, told) = draw(body);
-        assert_eq!(told.len(), 1, "{body}: {told:?}");
-        assert!(told[0].starts_with("line ") && told[0].contains(expected), "{body}: {told:?}");
+        let (_, messages) = draw(body);
+        assert_eq!(messages.len(), 1, "{body}: {messages:?}");
+        assert!(
+            messages[0].starts_with("line ") && messages[0].contains(expected),
+            "{body}: {messages:?}"
+        );
     }
 }
 
@@ -297,16 +300,16 @@ fn symbols_have_the_size_that_they_say() {
 #[test]
 fn filters_that_are_missing_or_hide_their_element() {
     let rect = |filter: &str| format!("<rect {RECT} fill='lime' filter='{filter}'/>");
-    let (picture, told) = draw(&rect("url(#none)"));
+    let (picture, messages) = draw(&rect("url(#none)"));
     assert_eq!(picture.get(20, 20), Some(LIME));
     assert!(
-        told.len() == 1 && told[0].contains("there is no filter with the id `none`"),
-        "{told:?}"
+        messages.len() == 1 && messages[0].contains("there is no filter with the id `none`"),
+        "{messages:?}"
     );
     let shadow = "<filter id='s'><feOffset in='SourceAlpha'/></filter>";
-    let (picture, told) = draw(&format!("{shadow}{}", rect("url(#s)")));
+    let (picture, messages) = draw(&format!("{shadow}{}", rect("url(#s)")));
     assert_eq!(picture.get(20, 20), Some([0; 4]), "no shadow is better than a black rectangle");
-    assert!(told.len() == 1 && told[0].contains("is left out"), "{told:?}");
+    assert!(messages.len() == 1 && messages[0].contains("is left out"), "{messages:?}");
 }
 
 fn fonts() -> Fonts {
@@ -329,8 +332,8 @@ fn spaced_letters_are_not_joined() {
     let right = |more: &str| extent(&draw(more).0).unwrap()[2];
     let joined = right("");
     for more in ["letter-spacing='10'", "style='letter-spacing:.5em'"] {
-        let (picture, told) = draw(more);
-        assert_eq!(told, Vec::<String>::new());
+        let (picture, messages) = draw(more);
+        assert_eq!(messages, Vec::<String>::new());
         let empty =
             (0..right(more)).filter(|x| (0..40).all(|y| picture.get(*x, y) == Some([0; 4])));
         assert!(empty.count() > 8, "{more}: there is room between the letters");
@@ -341,11 +344,11 @@ fn spaced_letters_are_not_joined() {
 }
 
 #[test]
-fn letters_that_no_font_has_are_told() {
-    let (_, told) = draw_with(document("<text y='30'>\u{4f60}</text>").as_bytes(), &fonts());
+fn letters_that_no_font_has_are_reported() {
+    let (_, messages) = draw_with(document("<text y='30'>\u{4f60}</text>").as_bytes(), &fonts());
     assert!(
-        told.len() == 1 && told[0].contains("there is no glyph for \u{4f60} (U+4F60)"),
-        "{told:?}"
+        messages.len() == 1 && messages[0].contains("there is no glyph for \u{4f60} (U+4F60)"),
+        "{messages:?}"
     );
 }
 
@@ -354,8 +357,8 @@ fn text_is_set_in_the_letters_that_css_asks_for() {
     let fonts = fonts();
     let draw =
         |text: &str| draw_with(document(&format!("<text y='30' {text}</text>")).as_bytes(), &fonts);
-    let (upper, told) = draw("style='text-transform:uppercase'>ab");
-    assert_eq!(told, Vec::<String>::new());
+    let (upper, messages) = draw("style='text-transform:uppercase'>ab");
+    assert_eq!(messages, Vec::<String>::new());
     assert!(upper == draw(">AB").0 && upper != draw(">ab").0);
     assert!(draw("style='text-transform:capitalize'>a bc").0 == draw(">A Bc").0);
     assert!(
@@ -376,8 +379,8 @@ fn drawings_are_read_in_their_encoding() {
         .flat_map(u16::to_le_bytes)
         .collect();
     for bytes in [latin, utf16, declared("UTF-8").into_bytes()] {
-        let (picture, told) = draw_with(&bytes, &Fonts::new());
-        assert_eq!((picture.get(20, 20), told), (Some(LIME), Vec::new()));
+        let (picture, messages) = draw_with(&bytes, &Fonts::new());
+        assert_eq!((picture.get(20, 20), messages), (Some(LIME), Vec::new()));
     }
 }
 
@@ -413,12 +416,12 @@ fn pictures_of_many_kinds_are_painted() {
         let body = format!("<image {RECT} xlink:href='data:{kind};base64,{data}'/>");
         assert_eq!(painted(&body).get(20, 20), Some(LIME), "{kind}");
     }
-    let (picture, told) =
+    let (picture, messages) =
         draw("<rect/>\n<image width='9' height='9' href='data:image/png;base64,iVBORw0KGgo='/>");
     assert_eq!(extent(&picture), None);
-    assert!(told.len() == 1 && told[0].starts_with("line 2, column 29: image `data:image/png;base64,iVBORw0KGgo=` is left out: it is cut off"), "{told:?}");
-    let (_, told) = draw("<image width='9' height='9' href='data:image/avif;base64,AAAA'/>");
-    assert!(told.len() == 1 && told[0].contains("is neither PNG nor JPEG"), "{told:?}");
+    assert!(messages.len() == 1 && messages[0].starts_with("line 2, column 29: image `data:image/png;base64,iVBORw0KGgo=` is left out: it is cut off"), "{messages:?}");
+    let (_, messages) = draw("<image width='9' height='9' href='data:image/avif;base64,AAAA'/>");
+    assert!(messages.len() == 1 && messages[0].contains("is neither PNG nor JPEG"), "{messages:?}");
 }
 
 /// Markers that show their direction by a square of 4 × 4 in front of a vertex.
@@ -504,6 +507,6 @@ fn pictures_are_no_paint() {
     let (picture, _) = draw("<rect width='9' height='9' fill='url(a.svg#b) red'/>");
     assert_eq!(extent(&picture), Some([0, 0, 9, 9]));
     // Ordinary underlines give no warning.
-    let (_, told) = draw("<g text-decoration='underline' vector-effect='none'/>");
-    assert!(told.is_empty(), "{told:?}");
+    let (_, messages) = draw("<g text-decoration='underline' vector-effect='none'/>");
+    assert!(messages.is_empty(), "{messages:?}");
 }

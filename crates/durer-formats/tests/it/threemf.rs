@@ -350,7 +350,7 @@ fn components_may_be_nested_deeply() {
 }
 
 #[test]
-fn what_is_not_read_is_told() {
+fn what_is_not_read_is_reported() {
     let resources = format!(
         r#"<object id="1" type="other"><mesh>{TRIANGLES}<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>
         <object id="2"><bo:booleanshape objectid="1"/></object>"#

@@ -83,13 +83,14 @@ pub fn annotate(sheet: &mut Sheet, wanted: &Annotations, shown: &Shown) -> Resul
         automatic::sizes(board_ref, &views, features, shown.unit, &mut notes);
     }
     let sized = thread::put(board_ref, &views, features, &wanted.threads, shown.unit, &mut notes)?;
-    for (kind, asked) in [(FeatureKind::Hole, wanted.holes), (FeatureKind::Boss, wanted.bosses)] {
+    for (kind, requested) in [(FeatureKind::Hole, wanted.holes), (FeatureKind::Boss, wanted.bosses)]
+    {
         let chosen: Vec<&Feature> = features
             .iter()
-            .filter(|f| asked && f.kind == kind && !sized.iter().any(|s| s.name == f.name))
+            .filter(|f| requested && f.kind == kind && !sized.iter().any(|s| s.name == f.name))
             .collect();
         automatic::diameters(board_ref, &views, &chosen, shown.unit, &mut notes);
-        if asked && !features.iter().any(|f| f.kind == kind) {
+        if requested && !features.iter().any(|f| f.kind == kind) {
             notes.push(format!("the model has no {} to be dimensioned", kind.name()));
         }
     }

@@ -327,8 +327,8 @@ fn put(sheet: &mut Sheet, views: &[Placed], options: &Options) {
 
 /// Returns the steps of nearness that lines behind this many surfaces have, the farthest first.
 fn steps(views: &[Placed], depth: u32) -> Vec<Option<u8>> {
-    let told = depth == 0 && views.iter().any(|v| !v.drawing.nearness.is_empty());
-    let near = if told { NEARNESS_STEPS } else { 0 };
+    let is_known = depth == 0 && views.iter().any(|v| !v.drawing.nearness.is_empty());
+    let near = if is_known { NEARNESS_STEPS } else { 0 };
     [None].into_iter().chain((0..near).rev().map(Some)).collect()
 }
 

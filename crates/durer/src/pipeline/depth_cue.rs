@@ -32,7 +32,7 @@ pub fn depth_cued(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Dr
     let Some(size) = drawing.bounds().map(|b| b.size().max_element()) else { return Ok(drawing) };
     let vertices = Vertices::new(scene, camera, size * ONE_PLACE)?;
     let depths: Vec<Option<Vec<f64>>> =
-        drawing.lines.iter().map(|l| told(l).then(|| vertices.along(l)).flatten()).collect();
+        drawing.lines.iter().map(|l| is_cued(l).then(|| vertices.along(l)).flatten()).collect();
     let all = || depths.iter().flatten().flatten().copied();
     let (near, far) =
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
@@ -56,7 +56,7 @@ pub fn depth_cued(drawing: Drawing, scene: &Scene, camera: &Camera) -> Result<Dr
 }
 
 /// Returns whether a line is along a visible edge.
-fn told(line: &Line) -> bool {
+fn is_cued(line: &Line) -> bool {
     let apart = matches!(
         line.class,
         LineClass::Hatch | LineClass::Shadow | LineClass::Grid | LineClass::Axis

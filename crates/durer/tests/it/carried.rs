@@ -261,18 +261,18 @@ fn what_pierces_enters_at_the_face() {
 fn nets_refuse_what_is_not_before_the_eye() {
     let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
     let square = square.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
-    let told = |faces: &[Vec<DVec3>], eye| FaceNet::new(faces, eye).unwrap_err().to_string();
+    let reported = |faces: &[Vec<DVec3>], eye| FaceNet::new(faces, eye).unwrap_err().to_string();
     let eye = Eye::At(DVec3::new(0.5, -0.5, 0.0));
     assert!(
         FaceNet::new(std::slice::from_ref(&square), Eye::At(DVec3::new(0.5, 0.5, 1.0))).is_ok()
     );
     let behind: Vec<DVec3> = square.iter().map(|p| *p - DVec3::Y * 3.0).collect();
-    assert!(told(&[square.clone(), square.clone(), behind], eye).contains("before the eye"));
+    assert!(reported(&[square.clone(), square.clone(), behind], eye).contains("before the eye"));
     let mut bent = square.clone();
     bent[0].z = 0.5;
-    assert!(told(&[bent], Eye::Along(DVec3::NEG_Z)).contains("plane"));
+    assert!(reported(&[bent], Eye::Along(DVec3::NEG_Z)).contains("plane"));
     let line = vec![square[0], square[1], square[0]];
-    assert!(told(&[line], Eye::Along(DVec3::NEG_Z)).contains("area"));
+    assert!(reported(&[line], Eye::Along(DVec3::NEG_Z)).contains("area"));
     let mut wrong = square;
     wrong[1].y = f64::INFINITY;
     assert!(FaceNet::new(&[wrong], Eye::Along(DVec3::NEG_Z)).is_err());

@@ -238,8 +238,8 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
 
 /// Returns the number of cases; the variable PROPTEST_CASES can raise it.
 pub fn cases(usual: u32) -> u32 {
-    let asked = std::env::var("PROPTEST_CASES").ok();
-    asked.and_then(|count| count.parse().ok()).unwrap_or(usual)
+    let requested = std::env::var("PROPTEST_CASES").ok();
+    requested.and_then(|count| count.parse().ok()).unwrap_or(usual)
 }
 
 proptest! {

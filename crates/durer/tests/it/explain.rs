@@ -113,14 +113,14 @@ fn changed_cells_are_marked() {
 }
 
 #[test]
-fn wrong_names_and_inputs_are_told_what_is_right() {
+fn wrong_names_and_inputs_are_reported_what_is_right() {
     let none = Options::default();
     let example = |name: &str| Input::Example(name.to_owned());
-    let told =
+    let reported =
         |name: &str, input: &Input| explain::run(name, input, &none, 10).unwrap_err().to_string();
-    assert!(told("cohen-suterland", &example("")).contains("cohen-sutherland"));
-    assert!(told("cohen-sutherland", &example("line-xy")).contains("line-eh"));
-    let wrong = told("cohen-sutherland", &Input::Faces(Vec::new()));
+    assert!(reported("cohen-suterland", &example("")).contains("cohen-sutherland"));
+    assert!(reported("cohen-sutherland", &example("line-xy")).contains("line-eh"));
+    let wrong = reported("cohen-sutherland", &Input::Faces(Vec::new()));
     assert!(wrong.contains("faces in space") && wrong.contains("a window and a line"), "{wrong}");
     let many = Figure { points: vec![DVec2::ZERO; 3000], ..Default::default() };
     let error = explain::run("cohen-sutherland", &Input::Figure(many), &none, 10);
@@ -128,7 +128,7 @@ fn wrong_names_and_inputs_are_told_what_is_right() {
     for x in [f64::NAN, 1e300] {
         let lines = vec![vec![DVec2::new(x, 0.0); 2]];
         let figure = Figure { lines, ..Default::default() };
-        assert!(told("cohen-sutherland", &Input::Figure(figure)).contains("huge"));
+        assert!(reported("cohen-sutherland", &Input::Figure(figure)).contains("huge"));
     }
 }
 

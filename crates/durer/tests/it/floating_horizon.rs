@@ -261,7 +261,7 @@ fn fewer_lines_are_parts_of_all_lines() {
 }
 
 #[test]
-fn the_lower_side_is_told() {
+fn the_lower_side_is_reported() {
     let field = ripples(21, 21);
     let seen = |elevation: f64| {
         let all = curves(&field, &camera(30.0, elevation, true), &Options::default(), &mut NoTrace);
@@ -295,11 +295,11 @@ fn steps_rebuild_the_lines_and_change_nothing() {
     pieces.sort_by(|a, b| key(a).cmp(&key(b)).then(a.range[0].total_cmp(&b.range[0])));
     let rebuilt: Vec<(Family, usize, bool)> =
         pieces.iter().map(|p| (p.family, p.line, p.visible)).collect();
-    let told: Vec<(Family, usize, bool)> = traced
+    let reported: Vec<(Family, usize, bool)> = traced
         .iter()
         .flat_map(|c| std::iter::repeat_n((c.family, c.line, c.visible), c.points.len() - 1))
         .collect();
-    assert_eq!(rebuilt, told);
+    assert_eq!(rebuilt, reported);
 }
 
 #[test]

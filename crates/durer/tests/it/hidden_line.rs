@@ -341,7 +341,7 @@ fn edges_that_meet_in_a_corner_end_in_one_point() {
 }
 
 #[test]
-fn hidden_lines_beside_visible_ones_are_left_out_where_that_is_asked_for() {
+fn hidden_lines_beside_visible_ones_are_left_out_where_that_is_requested() {
     let cube = cuboid([0.0; 3], [2.0; 3]);
     for off in [1e-7, 1e-5, 1e-4, 1e-3] {
         let seen = view(DVec3::splat(1.0), DVec3::new(off, -1.3 * off, 1.0), 4.0, false);

@@ -54,7 +54,7 @@ fn ridge(angles: &[f64]) -> Vec<Triangle> {
 }
 
 #[test]
-fn creases_that_get_blunter_go_on_where_that_is_asked_for() {
+fn creases_that_get_blunter_go_on_where_that_is_requested() {
     let mut roof = ridge(&[60.0, 50.0, 35.0, 30.0, 20.0]);
     let view = view(DVec3::new(2.5, 0.0, 0.0), DVec3::Z, 8.0, false);
     let crease_length = |roof: &[Triangle], end: f64| {

@@ -173,18 +173,20 @@ fn pieces_that_are_compared_have_one_centre() {
 fn limits_and_budgets_are_kept() {
     let mut random = Random(3);
     let patches = [wild(&mut random)];
-    let told = |screen: &Screen, options: Options| {
+    let reported = |screen: &Screen, options: Options| {
         render(&patches, screen, &options, &mut NoTrace).unwrap_err().to_string()
     };
     let few = Options { max_pieces: 10, ..Options::default() };
-    assert!(told(&screen(), few).contains("pieces"));
+    assert!(reported(&screen(), few).contains("pieces"));
     let shallow = Options { max_depth: 1, ..Options::default() };
-    assert!(told(&screen(), shallow).contains("divisions"));
+    assert!(reported(&screen(), shallow).contains("divisions"));
     for flatness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(told(&screen(), Options { flatness, ..Options::default() }).contains("flatness"));
+        assert!(
+            reported(&screen(), Options { flatness, ..Options::default() }).contains("flatness")
+        );
     }
     let small = Screen { work: Work::with_budget(1_000, "the budget"), ..screen() };
-    assert!(told(&small, Options::default()).contains("memory"));
+    assert!(reported(&small, Options::default()).contains("memory"));
     let mut rows = *patches[0].rows();
     rows[1][2].z = f64::NAN;
     assert!(Patch::new(rows).is_err());

@@ -179,7 +179,7 @@ fn what_needs_the_whole_is_refused() {
 }
 
 #[test]
-fn it_is_told_why_nothing_is_seen() {
+fn it_is_reported_why_nothing_is_seen() {
     let away = |scene: &mut Scene, by: Vec3| {
         scene.meshes[0].positions.iter_mut().for_each(|p| *p = *p * 0.01 + by);
     };
@@ -193,7 +193,7 @@ fn it_is_told_why_nothing_is_seen() {
         let (picture, _) = render(&scene, &plain).expect("picture");
         let whole = status(&scene, &plain, &picture).expect("status");
         assert!(matches!(whole, Status::Invisible(_)), "{by}");
-        assert_eq!(told(&plain, &pieces), whole, "{by}");
+        assert_eq!(reported(&plain, &pieces), whole, "{by}");
     }
     // One face turned away.
     let back = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p.as_vec3());
@@ -203,11 +203,11 @@ fn it_is_told_why_nothing_is_seen() {
     (options.camera.eye, options.camera.target) = (DVec3::NEG_Z * 3.0, DVec3::ZERO);
     (options.camera.near, options.camera.far) = (1.0, 5.0);
     let pieces = in_pieces(&scene, 100);
-    assert_eq!(told(&options, &pieces), Status::Invisible(Unseen::Culled));
-    assert_eq!(told(&options, &[]), Status::Empty);
+    assert_eq!(reported(&options, &pieces), Status::Invisible(Unseen::Culled));
+    assert_eq!(reported(&options, &[]), Status::Empty);
 }
 
-fn told(options: &RenderOptions, pieces: &[Scene]) -> Status {
+fn reported(options: &RenderOptions, pieces: &[Scene]) -> Status {
     let again =
         |visit: &mut dyn FnMut(&Scene) -> durer::Result<()>| pieces.iter().try_for_each(visit);
     status_of_pieces(options, again).expect("status")

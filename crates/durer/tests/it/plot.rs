@@ -63,7 +63,7 @@ fn texts_keep_apart_and_on_the_page() {
 }
 
 #[test]
-fn the_ground_has_the_shape_that_is_asked_for() {
+fn the_ground_has_the_shape_that_is_requested() {
     let top = ViewDirection::from_angles(0.0, 90.0, durer::scene::UpAxis::Y).expect("direction");
     for (aspect, wanted) in [(None, 0.2), (Some(1.0), 1.0), (Some(2.0), 2.0)] {
         let options = Options { direction: top, axes: None, aspect, ..Options::default() };

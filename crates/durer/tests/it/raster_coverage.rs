@@ -174,7 +174,7 @@ fn crowd(count: usize, size: DVec2, random: &mut Random) -> Contours {
 }
 
 #[test]
-fn noise_is_exact_where_that_is_asked_for() {
+fn noise_is_exact_where_that_is_requested() {
     let contours = crowd(150, DVec2::new(40.0, 12.0), &mut Random(61));
     for rule in RULES {
         let of = |overlap| {

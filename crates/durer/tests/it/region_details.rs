@@ -30,7 +30,7 @@ fn is_black(region: &Region) -> bool {
     region.color[..3] == [0, 0, 0]
 }
 
-fn told(drawing: &Drawing) -> Vec<(RegionKind, [u8; 4], f64)> {
+fn reported(drawing: &Drawing) -> Vec<(RegionKind, [u8; 4], f64)> {
     drawing.regions.iter().map(|r| (r.kind, r.color, r.area())).collect()
 }
 
@@ -45,7 +45,7 @@ fn shadows_fall_on_the_side_that_the_light_is_on_alone() {
         let above = shadowed(&triangles, DVec3::new(0.02, 0.01, 1.0), up);
         assert!(above.regions.iter().any(unlit));
         let of_floor = |r: &&Region| size < 3.0 || unlit(r);
-        assert!(above.regions.iter().filter(of_floor).all(unlit), "{:?}", told(&above));
+        assert!(above.regions.iter().filter(of_floor).all(unlit), "{:?}", reported(&above));
         assert_eq!(above.length(|l| l.class == LineClass::Shadow), 0.0);
     }
     let triangles = [floor(0.0, 3.0), floor(-1.0, 1.0)].concat();
@@ -53,7 +53,7 @@ fn shadows_fall_on_the_side_that_the_light_is_on_alone() {
     let below = shadowed(&triangles, DVec3::new(2.0, 0.1, -1.0), up);
     let (dark, lit): (Vec<&Region>, Vec<_>) =
         below.regions.iter().partition(|r| r.kind == RegionKind::Shadow);
-    assert!(!dark.is_empty() && dark.iter().all(|r| is_black(r)), "{:?}", told(&below));
+    assert!(!dark.is_empty() && dark.iter().all(|r| is_black(r)), "{:?}", reported(&below));
     assert!(!lit.is_empty() && lit.iter().all(|r| !is_black(r)));
     assert!(below.length(|l| l.class == LineClass::Shadow) > 1.0);
 }
@@ -69,7 +69,7 @@ fn what_is_as_dark_as_a_shadow_is_one_region_with_it() {
         dark.iter().map(|r| r.kind).collect::<Vec<_>>(),
         [RegionKind::Shadow],
         "{:?}",
-        told(&drawing)
+        reported(&drawing)
     );
     // Only two sides of the box, seen from an angle.
     assert!(dark[0].area() > 2.0 / 3.0_f64.sqrt() + 0.5, "{}", dark[0].area());

@@ -58,7 +58,7 @@ fn a_scene_that_is_seen_is_ok_wherever_it_is() {
 }
 
 #[test]
-fn what_hides_a_scene_is_told() {
+fn what_hides_a_scene_is_reported() {
     let invisible = Status::Invisible;
     assert_eq!(of(&Scene::default(), &options()), Status::Empty);
     let no_faces = Mesh { indices: Some(Vec::new()), parts: Vec::new(), ..sphere(4, None) };

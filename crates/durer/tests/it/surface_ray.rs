@@ -285,10 +285,10 @@ fn what_faces_away_from_a_light_asks_no_ray() {
     let mut scene = Scene::default();
     square(&mut scene, 0.0, 1.0, Material::default());
     let options = Options { shadows: true, ..Options::default() };
-    for (z, asked) in [(-5.0, false), (5.0, true)] {
+    for (z, requested) in [(-5.0, false), (5.0, true)] {
         let kind = LightKind::Point { position: DVec3::new(0.0, 0.0, z), range: None };
         let p = in_front(&scene, &[Light { kind, color: Vec3::ONE }]);
-        assert_eq!(rays(&p, &options, RayKind::Shadow) > 0, asked, "{z}");
+        assert_eq!(rays(&p, &options, RayKind::Shadow) > 0, requested, "{z}");
     }
 }
 

@@ -70,7 +70,7 @@ fn round_bodies_and_bends_have_none() {
 }
 
 #[test]
-fn they_are_drawn_only_where_asked_for() {
+fn they_are_drawn_only_where_requested() {
     let v = view(DVec3::new(0.0, 0.0, 2.5), DVec3::new(0.6, -1.0, 0.7), 12.0, false);
     let drawing = draw(&soup(&slot(12)), &v, &Options::default(), &mut NoTrace).expect("drawing");
     assert_eq!(drawing.length(|l| l.class == LineClass::Tangent), 0.0);

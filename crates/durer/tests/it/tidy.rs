@@ -194,6 +194,32 @@ fn docs_of_functions_begin_with_a_verb() {
     assert!(wrong.is_empty(), "{} functions:\n{}", wrong.len(), wrong.join("\n"));
 }
 
+/// Checks that names are the usual words for what they name: warnings are reported, systems are stated, options are
+/// requested.
+#[test]
+fn names_are_the_usual_words() {
+    const VAGUE: [&str; 3] = ["asked", "tell", "told"];
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for name in ["durer", "durer-formats", "durer-cli", "durer-wasm"] {
+        sources(&crates.join(name), &mut files);
+    }
+    let mut wrong = Vec::new();
+    for path in files {
+        let text = fs::read_to_string(&path).expect("source");
+        for (number, line) in text.lines().enumerate() {
+            // Text between quotes and comments are prose.
+            let code = line.split("//").next().unwrap_or_default();
+            let code: String = code.split('"').step_by(2).collect();
+            let mut names = code.split(|c: char| !c.is_alphanumeric() && c != '_');
+            if names.any(|name| VAGUE.contains(&name)) {
+                wrong.push(format!("{}:{}: {}", path.display(), number + 1, line.trim()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// Files and folders by their paths as modules.
 type Modules = BTreeMap<Vec<String>, PathBuf>;
 

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn what_is_wrong_is_reported_with_its_place() {
         let cases = [
             ("[dimension]\nkind = 'note'", 1, "double brackets"),
             ("[[dimension]]\nkind = 'lineal'", 29, "linear, diameter"),

@@ -90,7 +90,7 @@ impl Reader {
                 warnings.push(Place::Byte(self.at as u64), message);
                 self.at = self.bytes.len();
             }
-            self.tell(warnings);
+            self.warn(warnings);
             return Ok(None);
         };
         let place = Place::Byte(self.at as u64);
@@ -120,7 +120,7 @@ impl Reader {
         Ok(Some(Feature { geometry, properties, srid: self.system.code, ..Feature::default() }))
     }
 
-    fn tell(&mut self, warnings: &mut Warnings) {
+    fn warn(&mut self, warnings: &mut Warnings) {
         let [binary, infinite] = [&mut self.binary, &mut self.infinite].map(std::mem::take);
         warnings.add_counted(binary, "binary value is left out", "binary values are left out");
         warnings.add_counted(

@@ -39,12 +39,15 @@ pub struct Given {
 impl Given {
     /// Returns what the members of a feature set or of a geometry state, or else what is given already.
     pub fn of(self, members: &[RawMember<'_>]) -> Self {
-        let told = |name: &[u8]| match find(members, name)?.as_bytes() {
+        let messages = |name: &[u8]| match find(members, name)?.as_bytes() {
             b"true" => Some(true),
             b"false" => Some(false),
             _ => None,
         };
-        Self { has_z: told(b"\"hasZ\"").or(self.has_z), has_m: told(b"\"hasM\"").or(self.has_m) }
+        Self {
+            has_z: messages(b"\"hasZ\"").or(self.has_z),
+            has_m: messages(b"\"hasM\"").or(self.has_m),
+        }
     }
 
     /// Returns the dimensions of positions of this many numbers.

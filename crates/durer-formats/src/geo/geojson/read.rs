@@ -49,7 +49,7 @@ struct Systems {
     /// The common one of the features that have been read; unknown if they have several.
     common: Option<System>,
     /// True once a warning about an unknown one has been given.
-    is_told: bool,
+    is_reported: bool,
 }
 
 impl Systems {
@@ -58,7 +58,7 @@ impl Systems {
         let found = system::of_value(value);
         if found.is_unknown()
             && value.trim() != "null"
-            && !std::mem::replace(&mut self.is_told, true)
+            && !std::mem::replace(&mut self.is_reported, true)
         {
             let shown = crate::text::quote(value.as_bytes());
             let message = format!("the member crs, {shown}, names no known coordinate system");
@@ -109,8 +109,8 @@ impl<R: Read> Reader<R> {
 
     /// Returns the common coordinate system of the features, as far as they have been read.
     pub fn system(&self) -> System {
-        let told = system::of_members(&self.members);
-        told.or_else(|| self.systems.common.clone()).unwrap_or(System::LONLAT)
+        let stated = system::of_members(&self.members);
+        stated.or_else(|| self.systems.common.clone()).unwrap_or(System::LONLAT)
     }
 
     /// Returns whether the text is JSON of ArcGIS, before the first feature has been read.

@@ -103,8 +103,8 @@ fn systems(database: &Database, tables: &[Table]) -> Result<BTreeMap<i64, System
         let code = integer(row, "organization_coordsys_id").and_then(|c| i32::try_from(c).ok());
         let code = code.filter(|_| matches!(&organization[..], "EPSG" | "ESRI"));
         let definition = [text(row, "definition_12_063"), text(row, "definition")];
-        let is_told = |d: &&&str| !d.trim().is_empty() && !is(d, "undefined");
-        let wkt = definition.iter().rev().find(is_told).map(|d| (*d).to_owned());
+        let is_defined = |d: &&&str| !d.trim().is_empty() && !is(d, "undefined");
+        let wkt = definition.iter().rev().find(is_defined).map(|d| (*d).to_owned());
         let code = code.or_else(|| crs::code_of_wkt(wkt.as_deref()?));
         Some((id, System { code, wkt }))
     };

@@ -77,7 +77,7 @@ impl Reader {
             self.at += 1;
             self.rows = None;
         }
-        self.tell(warnings);
+        self.warn(warnings);
         Ok(None)
     }
 
@@ -97,7 +97,7 @@ impl Reader {
         Err(Error::whole(message))
     }
 
-    fn tell(&mut self, warnings: &mut Warnings) {
+    fn warn(&mut self, warnings: &mut Warnings) {
         let faults = std::mem::take(&mut self.faults);
         warnings.add_counted(
             faults.binary,
@@ -105,8 +105,8 @@ impl Reader {
             "binary values are left out",
         );
         if faults.geometries.count > 0 {
-            let told = unread(faults.geometries.count, GEOMETRIES, &faults.why);
-            warnings.push(faults.geometries.first, told);
+            let message = unread(faults.geometries.count, GEOMETRIES, &faults.why);
+            warnings.push(faults.geometries.first, message);
         }
     }
 }
@@ -162,7 +162,7 @@ fn chosen(contents: Contents, name: Option<&str>, warnings: &mut Warnings) -> Re
     if !tables.is_empty() {
         let names = names(&tables);
         let words = "{table without geometries is left out|tables without geometries are left out}; --layer names one";
-        let message = format!("{}: {names}", crate::told::agreeing(tables.len() as u64, words));
+        let message = format!("{}: {names}", crate::wording::agreeing(tables.len() as u64, words));
         warnings.push(Place::Whole, message);
     }
     Ok(layers)

@@ -6,12 +6,12 @@ use crate::geo::{System, Warnings};
 use serde_json::{Value, json};
 
 /// Returns the system of a member `crs`; longitude and latitude if there is none, unknown if it is null.
-pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
-    let Some(told) = told else { return System::LONLAT };
-    if told.is_null() {
+pub fn system(stated: Option<&Value>, warnings: &mut Warnings) -> System {
+    let Some(stated) = stated else { return System::LONLAT };
+    if stated.is_null() {
         return System::default();
     }
-    let id = if told["id"].is_null() { &told["ids"][0] } else { &told["id"] };
+    let id = if stated["id"].is_null() { &stated["ids"][0] } else { &stated["id"] };
     let code = &id["code"];
     let number = code.as_i64().or_else(|| code.as_str()?.parse().ok());
     let code = match (id["authority"].as_str(), number) {
@@ -20,7 +20,7 @@ pub fn system(told: Option<&Value>, warnings: &mut Warnings) -> System {
         _ => None,
     };
     if code.is_none() {
-        let name = told["name"].as_str().unwrap_or("without a name");
+        let name = stated["name"].as_str().unwrap_or("without a name");
         let message = format!("the coordinate system {name} has no number; --from-crs sets one");
         warnings.push(Place::Path("metadata `geo`".to_owned()), message);
     }

@@ -64,7 +64,7 @@ impl Reader {
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         let row = caught(|| self.rows.next())?;
         let Some(row) = row else {
-            self.tell(warnings);
+            self.warn(warnings);
             return Ok(None);
         };
         self.row += 1;
@@ -103,12 +103,12 @@ impl Reader {
         Feature { geometry, properties, srid, ..Feature::default() }
     }
 
-    fn tell(&mut self, warnings: &mut Warnings) {
+    fn warn(&mut self, warnings: &mut Warnings) {
         let (binary, broken) = (std::mem::take(&mut self.binary), std::mem::take(&mut self.broken));
         warnings.add_counted(binary, "binary value is left out", "binary values are left out");
         if broken.count > 0 {
-            let told = unread(broken.count, GEOMETRIES, &self.why);
-            warnings.push(broken.first, told);
+            let message = unread(broken.count, GEOMETRIES, &self.why);
+            warnings.push(broken.first, message);
         }
     }
 }

@@ -11,7 +11,7 @@ use super::beside::Beside;
 use super::numbered::Label;
 use super::{Feature, System, Warnings};
 use crate::text::Tally;
-use crate::told::counted;
+use crate::wording::counted;
 use crate::{Error, Place, Result};
 use dbf::Table;
 use encoding::Encoding;
@@ -90,7 +90,7 @@ impl Reader {
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
         loop {
             let Some(content) = self.content(warnings) else {
-                self.tell(warnings);
+                self.warn(warnings);
                 return Ok(None);
             };
             let place = Place::Byte(content.start as u64);
@@ -137,7 +137,7 @@ impl Reader {
         Some(start..end)
     }
 
-    fn tell(&mut self, warnings: &mut Warnings) {
+    fn warn(&mut self, warnings: &mut Warnings) {
         let faults = std::mem::take(&mut self.faults);
         if let Some(table) = self.table.take()
             && table.rows() != self.row

@@ -129,11 +129,11 @@ fn kind(shapes: &[Shape]) -> Result<Kind> {
     ];
     let there: Vec<_> = counts.iter().filter(|(count, ..)| *count > 0).collect();
     if there.len() > 1 {
-        let told: Vec<String> =
+        let words: Vec<String> =
             there.iter().map(|(count, _, what)| format!("{count} features of {what}")).collect();
         return Err(Error::Unsupported {
             place: Place::Whole,
-            what: format!("a Shapefile with {}", told.join(" and ")),
+            what: format!("a Shapefile with {}", words.join(" and ")),
             hint: "it holds one kind; write FlatGeobuf or GeoJSON, or each kind for itself"
                 .to_owned(),
         });

@@ -105,7 +105,7 @@ pub struct Reader {
 impl Reader {
     pub fn new(text: Vec<u8>) -> Self {
         let frames = vec![Frame { at: 0, levels: vec![OUTERMOST], is_done: false }];
-        let walk = Walk { frames, has_root: false, ids: None, used: 0, told: (0, 1, 0) };
+        let walk = Walk { frames, has_root: false, ids: None, used: 0, last_place: (0, 1, 0) };
         Self { text, walk }
     }
 
@@ -126,7 +126,7 @@ struct Walk {
     /// Bytes shown by `use`.
     used: u64,
     /// The last place that was reported: byte, line, and the start of the line.
-    told: (usize, u64, usize),
+    last_place: (usize, u64, usize),
 }
 
 /// Returns the events of a text from a byte on. Matching of names is checked by [`Walk`], which can continue from any
@@ -192,13 +192,14 @@ impl Walk {
     /// Returns the line and column of a byte; counts on from the last reported place.
     fn place(&mut self, text: &[u8], at: usize) -> Place {
         let at = at.min(text.len());
-        let (from, mut line, mut start) = if at < self.told.0 { (0, 1, 0) } else { self.told };
+        let (from, mut line, mut start) =
+            if at < self.last_place.0 { (0, 1, 0) } else { self.last_place };
         let between = text.get(from..at).unwrap_or_default();
         for (i, _) in between.iter().enumerate().filter(|(_, b)| **b == b'\n') {
             line += 1;
             start = from + i + 1;
         }
-        self.told = (at, line, start);
+        self.last_place = (at, line, start);
         Place::Line(line, (at - start) as u64 + 1)
     }
 
@@ -271,8 +272,8 @@ impl Walk {
             return if blank { Ok(()) } else { Err(self.fail(text, at, outside)) };
         };
         let is_sheet = name_at(text, level.start).ends_with(b"style");
-        let told = ["fill-rule", "display", "visibility"].into_iter().find(|p| words.contains(p));
-        if let Some(property) = told.filter(|_| is_sheet) {
+        let unread = ["fill-rule", "display", "visibility"].into_iter().find(|p| words.contains(p));
+        if let Some(property) = unread.filter(|_| is_sheet) {
             let message = format!("style sheets are not read; this one says `{property}`");
             self.warn(text, at, message, warnings);
         }

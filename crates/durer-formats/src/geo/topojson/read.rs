@@ -320,7 +320,7 @@ impl Topology<'_> {
             let known = number.fract() == 0.0 && number.abs() < 9e15;
             let index = if number < 0.0 { -number - 1.0 } else { number } as usize;
             let Some(arc) = self.arcs.get(index).filter(|_| known) else {
-                let there = crate::told::there_are(self.arcs.len() as u64);
+                let there = crate::wording::there_are(self.arcs.len() as u64);
                 let message = format!("there is no arc of this number: {there}");
                 return Err(place.clone().error(message));
             };

@@ -30,7 +30,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             let count = shown.descendants().count();
             if count > left {
                 let what = "custom properties change too many copied elements";
-                self.told.push((node.range().start, what.to_owned()));
+                self.notes.push((node.range().start, what.to_owned()));
                 break;
             }
             left -= count;
@@ -75,7 +75,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
         self.changes.definitions = own.definitions;
         for pending in std::mem::replace(&mut self.pending, pending).into_iter().rev() {
-            pending.finish(&mut self.changes, &self.ids, &mut self.told);
+            pending.finish(&mut self.changes, &self.ids, &mut self.notes);
         }
         let mut written = write::Written::default();
         let definitions = std::mem::take(&mut self.changes.definitions);

@@ -35,7 +35,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             self.varied.insert(node.id());
         }
         let Some(value) = self.styles.variables.replaced(&declared.value, scope.variables) else {
-            self.tell((name, &declared.value), element, at, "it is undefined; it is ignored");
+            self.note((name, &declared.value), element, at, "it is undefined; it is ignored");
             return set(name, None);
         };
         let value = value.trim();
@@ -66,7 +66,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                 if let Some([r, g, b, a]) = color.filter(|color| color[3] > 0) {
                     set(name, Some(format!("#{r:02x}{g:02x}{b:02x}{a:02x}")));
                 } else if color.is_none() && value != "none" {
-                    self.tell(
+                    self.note(
                         (name, value),
                         element,
                         at,
@@ -78,7 +78,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             "background-color" | "text-overflow" => return,
             "text-transform" if Case::of(value).is_some() => return,
             "text-transform" => {
-                return self.tell((name, value), element, at, "text is set as it is written");
+                return self.note((name, value), element, at, "text is set as it is written");
             }
             "white-space" => {
                 let keeps =
@@ -90,7 +90,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             }
             "clip-path" => later.clip(value, at),
             "mask" if !value.starts_with("url(") && value != "none" => {
-                return self.tell(
+                return self.note(
                     (name, value),
                     element,
                     at,
@@ -110,7 +110,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             match kind.words(name, value, &scope.around) {
                 Some(usable) => words = usable,
                 None => {
-                    self.tell(
+                    self.note(
                         (name, value),
                         element,
                         at,

@@ -74,7 +74,7 @@ struct Walk<'a, 'i> {
     pictures: Vec<(String, usize)>,
     first_picture: usize,
     has_markers: bool,
-    told: Vec<(usize, String)>,
+    notes: Vec<(usize, String)>,
     /// Messages that were given already.
     seen: BTreeSet<String>,
 }
@@ -102,7 +102,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             pictures: Vec::new(),
             first_picture,
             has_markers: document.descendants().any(|node| node.tag_name().name() == "marker"),
-            told: Vec::new(),
+            notes: Vec::new(),
             seen: BTreeSet::new(),
         }
     }
@@ -221,7 +221,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                     edits.push((Cow::Borrowed(name), Some(said.clone())));
                 }
                 None => {
-                    self.tell((name, value), element, at, "it is undefined; it is ignored");
+                    self.note((name, value), element, at, "it is undefined; it is ignored");
                     return edits.push((Cow::Borrowed(name), None));
                 }
             }
@@ -229,21 +229,21 @@ impl<'a, 'i> Walk<'a, 'i> {
         self.check_links(node, name, &said, at);
         if is_of_svg(&node)
             && PRESENTATION.contains(&name)
-            && let Some(told) = not_drawn(name, &said)
-            && self.seen.insert(told.clone())
+            && let Some(note) = not_drawn(name, &said)
+            && self.seen.insert(note.clone())
         {
-            self.told.push((at, told));
+            self.notes.push((at, note));
         }
         if is_property && said != "inherit" && is_general(&said) {
             return edits.push((Cow::Borrowed(name), general(name, &said)));
         }
         let Some(kind) = kind.filter(|_| said != "inherit") else { return };
         let words = kind.words(name, &said, &scope.around);
-        let is_told = self.check(kind, (name, &said), element, at, words.is_some());
+        let is_noted = self.check(kind, (name, &said), element, at, words.is_some());
         let edit = match words {
             Some(Cow::Borrowed(words)) if words == &*said => return,
             Some(words) => Some(Cow::Owned(words.into_owned())),
-            None if is_told && kind.fate(name, &said) == Fate::PassedOver => None,
+            None if is_noted && kind.fate(name, &said) == Fate::PassedOver => None,
             None => return,
         };
         edits.push((Cow::Borrowed(name), edit));
@@ -262,7 +262,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         if kind == Kind::Transform && !can_be_drawn(value) {
             let what = "it makes everything flat or smaller than 10⁻⁷ of its size, or has too large \
                         numbers; the elements it applies to are left out";
-            self.tell(said, element, at, what);
+            self.note(said, element, at, what);
             return false;
         }
         if is_usable && (kind != Kind::Path || kind.is_known(value)) {
@@ -270,14 +270,14 @@ impl<'a, 'i> Walk<'a, 'i> {
         }
         if !value.trim().is_empty() {
             let fate = kind.fate(name, value).in_words();
-            self.tell(said, element, at, &format!("{}; {fate}", kind.wanted()));
+            self.note(said, element, at, &format!("{}; {fate}", kind.wanted()));
         }
         true
     }
 
-    fn tell(&mut self, (name, value): (&str, &str), element: &str, at: usize, what: &str) {
+    fn note(&mut self, (name, value): (&str, &str), element: &str, at: usize, what: &str) {
         if self.seen.insert(format!("{name} {value}")) {
-            self.told.push((at, format!("`{name}` of `{element}` is `{}`: {what}", shown(value))));
+            self.notes.push((at, format!("`{name}` of `{element}` is `{}`: {what}", shown(value))));
         }
     }
 
@@ -296,7 +296,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         };
         if elsewhere {
             let what = format!("elements of other files, and pictures, are not read; {wants}");
-            return self.tell((name, value), element, at, &what);
+            return self.note((name, value), element, at, &what);
         }
         let link = match name {
             "href" => value.trim().strip_prefix('#'),
@@ -307,22 +307,22 @@ impl<'a, 'i> Walk<'a, 'i> {
         };
         if let Some(id) = link.filter(|id| !self.ids.contains_key(id)) {
             let what = format!("there is no element with the id `{}`; {wants}", shown(id));
-            self.tell((name, value), element, at, &what);
+            self.note((name, value), element, at, &what);
         }
     }
 
     /// Returns the amended document and the messages.
     fn finish(mut self) -> Result<Amended> {
         self.copy_shown()?;
-        self.told.append(&mut self.styles.told);
+        self.notes.append(&mut self.styles.notes);
         for pending in std::mem::take(&mut self.pending).into_iter().rev() {
-            pending.finish(&mut self.changes, &self.ids, &mut self.told);
+            pending.finish(&mut self.changes, &self.ids, &mut self.notes);
         }
         let lines = Lines::new(self.document.input_text());
         let mut seen = BTreeSet::new();
-        self.told.sort_by_key(|(at, _)| *at);
-        let told = self.told.iter().filter(|(_, message)| seen.insert(message.as_str()));
-        let warnings = told
+        self.notes.sort_by_key(|(at, _)| *at);
+        let notes = self.notes.iter().filter(|(_, message)| seen.insert(message.as_str()));
+        let warnings = notes
             .map(|(at, message)| Warning { place: lines.place(*at), message: message.clone() })
             .collect();
         let is_new = self.styles.has_sheets || !self.changes.is_empty();

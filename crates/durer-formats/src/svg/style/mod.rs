@@ -31,7 +31,7 @@ const MAX_APPLIED: usize = 1 << 29;
 const COST: usize = 64;
 
 /// A warning about a style sheet or attribute, and its place in the document.
-pub(super) type Told = (usize, String);
+pub(super) type Note = (usize, String);
 
 /// The style sheets of a document, and their declarations for elements.
 pub(super) struct Styles {
@@ -47,7 +47,7 @@ pub(super) struct Styles {
     known: HashMap<String, Rc<Vec<Declaration>>>,
     pub variables: Variables,
     applied: usize,
-    pub told: Vec<Told>,
+    pub notes: Vec<Note>,
     /// True if the document has style sheets.
     pub has_sheets: bool,
 }
@@ -66,7 +66,7 @@ impl Styles {
     /// Creates the style sheets of a document.
     pub fn new(document: &Document<'_>) -> Self {
         let screen = screen(document);
-        let (mut rules, mut told, mut has_sheets) = (Vec::new(), Vec::new(), false);
+        let (mut rules, mut notes, mut has_sheets) = (Vec::new(), Vec::new(), false);
         for node in document.descendants().filter(|node| node.tag_name().name() == "style") {
             has_sheets = true;
             let is_css = node
@@ -80,9 +80,9 @@ impl Styles {
                 let content = text.text().unwrap_or_default();
                 let start = start_of(document, text, content);
                 let sheet = sheet::parse(content, &screen);
-                told.extend(sheet.told.into_iter().map(|(at, message)| (start + at, message)));
+                notes.extend(sheet.notes.into_iter().map(|(at, message)| (start + at, message)));
                 rules.extend(
-                    sheet.rules.into_iter().map(|rule| usable(rule, start, true, &mut told)),
+                    sheet.rules.into_iter().map(|rule| usable(rule, start, true, &mut notes)),
                 );
             }
         }
@@ -97,7 +97,7 @@ impl Styles {
             known: HashMap::new(),
             variables: Variables::default(),
             applied: 0,
-            told,
+            notes,
             has_sheets,
         };
         styles.index();
@@ -172,16 +172,16 @@ impl Styles {
             return known.clone();
         }
         let place = node.attribute_node("style").map_or(0, |style| style.range().start);
-        let (declarations, told) = sheet::declarations(text);
-        self.told.extend(told.into_iter().map(|(_, message)| (place, message)));
+        let (declarations, notes) = sheet::declarations(text);
+        self.notes.extend(notes.into_iter().map(|(_, message)| (place, message)));
         let rule = Rule { selectors: Vec::new(), declarations };
-        let mut told = Vec::new();
-        let rule = usable(rule, 0, false, &mut told);
+        let mut notes = Vec::new();
+        let rule = usable(rule, 0, false, &mut notes);
         let element = format!("of `{}`", node.tag_name().name());
-        let told = told
+        let notes = notes
             .into_iter()
             .map(|(_, message)| (place, message.replacen("of `style`", &element, 1)));
-        self.told.extend(told);
+        self.notes.extend(notes);
         let own = Rc::new(rule.declarations);
         self.known.insert(text.to_owned(), own.clone());
         own
@@ -197,13 +197,13 @@ fn key(selector: &Selector) -> Option<&Simple> {
 }
 
 /// Returns a rule with shorthands divided; values that cannot be used are removed, with a warning.
-fn usable(rule: Rule, start: usize, is_sheet: bool, told: &mut Vec<Told>) -> Rule {
+fn usable(rule: Rule, start: usize, is_sheet: bool, notes: &mut Vec<Note>) -> Rule {
     let mut declarations = Vec::new();
     for mut declaration in rule.declarations {
         declaration.at += start;
         match properties::usable(&declaration, is_sheet) {
             Ok(parts) => declarations.extend(parts),
-            Err(message) => told.push((declaration.at, message)),
+            Err(message) => notes.push((declaration.at, message)),
         }
     }
     Rule { declarations, ..rule }

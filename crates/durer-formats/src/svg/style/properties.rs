@@ -177,8 +177,8 @@ pub(super) fn usable(
     if name.starts_with("--") {
         return Ok(vec![declaration.clone()]);
     }
-    if let Some(told) = not_drawn(name, value) {
-        return Err(told);
+    if let Some(note) = not_drawn(name, value) {
+        return Err(note);
     }
     if NOT_DRAWN.contains(&name.as_str()) || !is_known(name) {
         return Ok(Vec::new());

@@ -32,7 +32,7 @@ pub(super) struct Rule {
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
     pub rules: Vec<Rule>,
-    pub told: Vec<(usize, String)>,
+    pub notes: Vec<(usize, String)>,
 }
 
 /// Number of letters of an unknown text that a message quotes.
@@ -62,7 +62,7 @@ pub(super) fn declarations(text: &str) -> (Vec<Declaration>, Vec<(usize, String)
     let screen = Screen::default();
     let mut reader = Reader { text, pieces: &pieces, screen: &screen, sheet: Sheet::default() };
     let found = reader.declarations(0, pieces.len());
-    (found, reader.sheet.told)
+    (found, reader.sheet.notes)
 }
 
 struct Reader<'a, 'b> {
@@ -73,9 +73,9 @@ struct Reader<'a, 'b> {
 }
 
 impl Reader<'_, '_> {
-    fn tell(&mut self, at: usize, message: String) {
+    fn note(&mut self, at: usize, message: String) {
         let place = self.pieces.get(at).map_or(self.text.len(), |piece| piece.start);
-        self.sheet.told.push((place, message));
+        self.sheet.notes.push((place, message));
     }
 
     /// Returns the text from one token to before another.
@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
                 "the rule for `{}` is ignored: such selectors are not understood",
                 shown(self.text(at, open))
             );
-            return self.tell(at, message);
+            return self.note(at, message);
         };
         let declarations = self.declarations(open + 1, close);
         self.sheet.rules.push(Rule { selectors, declarations });
@@ -143,11 +143,11 @@ impl Reader<'_, '_> {
                 Ok(false) => {}
                 Err(()) => {
                     let query = shown(self.text(at + 1, open));
-                    self.tell(at, passed_over(&format!(": `{query}` is not understood")));
+                    self.note(at, passed_over(&format!(": `{query}` is not understood")));
                 }
             },
             "layer" if is_block && depth < MAX_DEPTH => {
-                self.tell(at, "rules of `@layer` count as if they were outside of it".to_owned());
+                self.note(at, "rules of `@layer` count as if they were outside of it".to_owned());
                 self.rules(open + 1, close, depth + 1);
             }
             // Browsers know nearly all that is requested.
@@ -162,9 +162,9 @@ impl Reader<'_, '_> {
             }
             "charset" | "namespace" | "keyframes" | "-webkit-keyframes" | "-moz-keyframes"
             | "page" | "property" | "layer" => {}
-            "import" => self.tell(at, passed_over(": style sheets of other files are not read")),
-            "font-face" => self.tell(at, passed_over(": fonts are those that are given")),
-            _ => self.tell(at, passed_over("")),
+            "import" => self.note(at, passed_over(": style sheets of other files are not read")),
+            "font-face" => self.note(at, passed_over(": fonts are those that are given")),
+            _ => self.note(at, passed_over("")),
         }
         close + 1
     }
@@ -183,7 +183,7 @@ impl Reader<'_, '_> {
             let over = self.find(at, end, if is_custom { &block[..1] } else { &block });
             if self.pieces.get(over).is_some_and(|piece| over < end && piece.token == block[1]) {
                 let within = shown(self.text(at, over));
-                self.tell(at, format!("the rule for `{within}` within another rule is ignored"));
+                self.note(at, format!("the rule for `{within}` within another rule is ignored"));
                 at = self.pieces.get(over).map_or(end, |piece| piece.mate).min(end) + 1;
                 continue;
             }
@@ -191,7 +191,7 @@ impl Reader<'_, '_> {
                 Some(declaration) => found.push(declaration),
                 None => {
                     let said = shown(self.text(at, over));
-                    self.tell(
+                    self.note(
                         at,
                         format!(
                             "`{said}` is not a declaration, as `fill: red` is one; it is ignored"
@@ -284,8 +284,8 @@ mod tests {
         );
         assert_eq!(said("a:1/* x */2;b:c ! IMPORTANT"), ["a=1 2", "b=c!"]);
         assert_eq!(said("--a:{x:y};b:2"), ["--a={x:y}", "b=2"]);
-        let (_, told) = declarations("fill red; x { y: z } stroke: blue");
-        assert_eq!(told.len(), 2, "{told:?}");
+        let (_, notes) = declarations("fill red; x { y: z } stroke: blue");
+        assert_eq!(notes.len(), 2, "{notes:?}");
     }
 
     #[test]
@@ -297,10 +297,14 @@ mod tests {
         );
         assert_eq!(sheet.rules.len(), 4, "{:?}", sheet.rules);
         assert_eq!(sheet.rules[0].selectors.len(), 2);
-        let told: Vec<_> = sheet.told.iter().map(|(at, message)| (*at, message.as_str())).collect();
-        assert!(told[0].0 == 5 && told[0].1.starts_with("`@import` is ignored"), "{told:?}");
-        assert!(told[1].1.contains("`e:has(f)`") && told[2].1.contains("@font-face"), "{told:?}");
-        assert_eq!(told.len(), 3);
+        let notes: Vec<_> =
+            sheet.notes.iter().map(|(at, message)| (*at, message.as_str())).collect();
+        assert!(notes[0].0 == 5 && notes[0].1.starts_with("`@import` is ignored"), "{notes:?}");
+        assert!(
+            notes[1].1.contains("`e:has(f)`") && notes[2].1.contains("@font-face"),
+            "{notes:?}"
+        );
+        assert_eq!(notes.len(), 3);
     }
 
     #[test]

@@ -247,7 +247,7 @@ impl Moves {
             let passes = self.line.compare_cut_exactly(at(axis, upper), at(other, *side));
             passes == if *side == 0 { Ordering::Less } else { Ordering::Greater }
         };
-        let asked = (0..2).filter(|side| borders.contains(bit(other, *side)));
-        asked.filter(is_beyond).fold(Outcode::INSIDE, |code, side| code | bit(other, side))
+        let requested = (0..2).filter(|side| borders.contains(bit(other, *side)));
+        requested.filter(is_beyond).fold(Outcode::INSIDE, |code, side| code | bit(other, side))
     }
 }

@@ -109,7 +109,7 @@ impl Linked {
             touches.extend([c, d].into_iter().filter(|&p| lies_within(a, b, p)).map(|p| (i, p)));
             apart &= (i < count) != (j < count) || !crosses([a, b], [c, d]);
         });
-        // A point on a segment has its place there told by either coordinate.
+        // A point on a segment has its place there given by either coordinate.
         let along = |&(edge, p): &(usize, DVec2)| {
             let [a, b] = edges[edge];
             let steep = (b.y - a.y).abs() > (b.x - a.x).abs();
@@ -160,7 +160,7 @@ impl Linked {
     /// Finds for every ring whether it starts inside the other's region.
     fn locate(&mut self, nodes: &[node::Node], grown: bool) {
         for k in 0..2 {
-            let tell = |start: &Start| {
+            let starts_inside = |start: &Start| {
                 let v = start.vertex;
                 let node =
                     nodes.binary_search_by(|node| node.compare(self.lists[k].vertices[v].at));
@@ -170,7 +170,7 @@ impl Linked {
                     locate(rings, p, WindingRule::EvenOdd) == Place::Inside
                 })
             };
-            let inside: Vec<bool> = self.lists[k].starts.iter().map(tell).collect();
+            let inside: Vec<bool> = self.lists[k].starts.iter().map(starts_inside).collect();
             for (start, inside) in self.lists[k].starts.iter_mut().zip(inside) {
                 start.inside = inside;
             }
@@ -218,7 +218,7 @@ impl Linked {
     }
 
     /// Reports both lists to a tracer.
-    pub fn tell(&self, t: &mut impl Tracer<Step>) {
+    pub fn trace(&self, t: &mut impl Tracer<Step>) {
         for (lists, list) in self.lists.iter().zip([Operand::Subject, Operand::Clip]) {
             for v in lists.starts.iter().flat_map(|start| lists.ring(start.vertex)) {
                 t.step(|| {

@@ -17,7 +17,7 @@ struct Part {
 /// Reports all pairs of closed segments that have a point in common, and others that are near each other, some of them
 /// several times. About O(n √n) time for n segments and O(n √n) memory if all are long, nearly O(n log n) and O(n) if
 /// they are short.
-pub(super) fn pairs(segments: &[[DVec2; 2]], mut tell: impl FnMut(usize, usize)) {
+pub(super) fn pairs(segments: &[[DVec2; 2]], mut found_pair: impl FnMut(usize, usize)) {
     let mut active: Vec<Part> = Vec::new();
     for mut parts in slabs(segments) {
         parts.sort_by(|p, q| p.low.total_cmp(&q.low));
@@ -25,7 +25,7 @@ pub(super) fn pairs(segments: &[[DVec2; 2]], mut tell: impl FnMut(usize, usize))
         for part in parts {
             active.retain(|other| other.high >= part.low);
             for other in &active {
-                tell(part.segment, other.segment);
+                found_pair(part.segment, other.segment);
             }
             active.push(part);
         }
@@ -53,8 +53,8 @@ fn slabs(segments: &[[DVec2; 2]]) -> Vec<Vec<Part>> {
             let ends = [across(k as f64 - MARGIN), across((k + 1) as f64 + MARGIN)];
             let rounding = (a.x.abs() + b.x.abs()) * (8.0 * f64::EPSILON);
             let (from, to) = (ends[0].min(ends[1]) - rounding, ends[0].max(ends[1]) + rounding);
-            let told = ends.iter().all(|x| x.is_finite());
-            let (low, high) = if told { (from, to) } else { (low.x, high.x) };
+            let is_finite = ends.iter().all(|x| x.is_finite());
+            let (low, high) = if is_finite { (from, to) } else { (low.x, high.x) };
             parts.push(Part { low, high, segment });
         }
     }
@@ -91,11 +91,11 @@ mod tests {
             let far = [0.0, 1e9 / 3.0][case / 4 % 2] * scale;
             let mut point = || DVec2::new(random(40), random(40)) * scale + DVec2::splat(far);
             let segments: Vec<[DVec2; 2]> = (0..30).map(|_| [point(), point()]).collect();
-            let mut told = vec![[false; 30]; 30];
-            pairs(&segments, |i, j| (told[i][j], told[j][i]) = (true, true));
+            let mut found = vec![[false; 30]; 30];
+            pairs(&segments, |i, j| (found[i][j], found[j][i]) = (true, true));
             for i in 0..30 {
                 for j in 0..i {
-                    let missed = meet(segments[i], segments[j]) && !told[i][j];
+                    let missed = meet(segments[i], segments[j]) && !found[i][j];
                     assert!(!missed, "{case}: {:?} {:?}", segments[i], segments[j]);
                 }
             }

@@ -127,7 +127,7 @@ fn walk_tame<T: Tracer<Step>>(
     }
     let mut once = |linked: Result<Linked>, op| -> Result<Vec<Vec<DVec2>>> {
         let linked = linked?;
-        linked.tell(t);
+        linked.trace(t);
         let mut found = walk(&linked, op, t);
         found.extend(linked.whole_rings(op));
         Ok(found)

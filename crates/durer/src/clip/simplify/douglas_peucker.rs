@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_are_told() {
+    fn distances_are_reported() {
         let bump = line(&[(0.0, 0.0), (1.0, 3.0), (2.0, 1.0), (4.0, 0.0)]);
         let weights = weights(&bump).unwrap();
         assert_eq!((weights[0], weights[1], weights[3]), (f64::INFINITY, 3.0, f64::INFINITY));

@@ -168,9 +168,9 @@ fn is_current(now: &[f64], &(bits, point): &Entry) -> bool {
 const GONE: f64 = -1.0;
 
 impl<G: Guard> Removal<'_, G> {
-    /// Leaves out all points that it can; calls `told` with each point and its weight. Returns the weights, infinite
+    /// Leaves out all points that it can; calls `visit` with each point and its weight. Returns the weights, infinite
     /// for points that stay.
-    pub fn run(mut self, mut told: impl FnMut(usize, f64)) -> Vec<f64> {
+    pub fn run(mut self, mut visit: impl FnMut(usize, f64)) -> Vec<f64> {
         let count = self.places.len();
         let mut weights = vec![f64::INFINITY; count];
         let mut queue = Queue { now: vec![f64::INFINITY; count], ..Queue::default() };
@@ -188,7 +188,7 @@ impl<G: Guard> Removal<'_, G> {
                 None => {
                     least = least.max(measure);
                     weights[b as usize] = least;
-                    told(b as usize, least);
+                    visit(b as usize, least);
                     self.unlink(&mut queue, [a, b, c]);
                 }
             }

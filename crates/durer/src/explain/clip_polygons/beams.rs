@@ -103,7 +103,7 @@ struct State {
     /// Number of edges active in it.
     width: usize,
     /// Number of edges of the beam that have been reported.
-    told: usize,
+    reported: usize,
     /// Active edges of the part of the beam: x below and above, windings, whether it contributes.
     active: Vec<([f64; 2], [i32; 2], bool)>,
     parts: Vec<Trapezoid>,
@@ -124,7 +124,7 @@ fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Fram
         operands,
         heights: Vec::new(),
         width: 0,
-        told: 0,
+        reported: 0,
         active: Vec::new(),
         parts: Vec::new(),
         sum: 0.0,
@@ -153,7 +153,7 @@ impl State {
 
     /// Returns the sides of the part of the beam that the last reported edge belongs to: each part reports all edges.
     fn part(&self) -> [f64; 2] {
-        let k = self.told.saturating_sub(1) / self.width.max(1);
+        let k = self.reported.saturating_sub(1) / self.width.max(1);
         let height =
             |k: usize| self.heights.get(k).or(self.heights.last()).copied().unwrap_or_default();
         [height(k), height(k + 1)]
@@ -173,7 +173,7 @@ impl State {
             }
             Step::Beam { y, active } => {
                 self.heights = y.to_vec();
-                (self.width, self.told) = (active, 0);
+                (self.width, self.reported) = (active, 0);
                 self.active.clear();
                 BEAM.with([("from", y[0].into()), ("to", y[1].into()), ("active", active.into())])
             }
@@ -184,10 +184,10 @@ impl State {
                 CROSSING.with([("at", at.into())])
             }
             Step::Active { x, winding, contributes } => {
-                if self.told.is_multiple_of(self.width.max(1)) {
+                if self.reported.is_multiple_of(self.width.max(1)) {
                     self.active.clear();
                 }
-                self.told += 1;
+                self.reported += 1;
                 self.active.push((x, winding, contributes));
                 let template = if contributes { &CONTRIBUTES } else { &ACTIVE };
                 let [subject, clip] = winding;

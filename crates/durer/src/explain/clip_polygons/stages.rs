@@ -243,7 +243,7 @@ impl State {
         };
         picture.chain(through, Look::Dashed);
         picture.chain(self.out.clone(), Look::Result);
-        // Which side counts as inside is told at an end of the line.
+        // Which side counts as inside is marked at an end of the line.
         let (end, inward) = match self.border {
             0 => (through[1], (-22.0, 11.0)),
             1 => (through[1], (-22.0, 11.0)),

@@ -60,7 +60,7 @@ struct State {
     active: Vec<(usize, Edge)>,
     row: i32,
     /// Entries of the active edge table that have come for this row.
-    told: usize,
+    entries: usize,
 }
 
 fn make(_: &Lesson, input: &Input, options: &Options, cap: usize) -> Result<Frames> {
@@ -84,7 +84,7 @@ pub(in crate::explain) fn by_rows(
         Ok(())
     })?;
     let edges = Vec::new();
-    let mut state = State { filling, edges, entered: 0, active: Vec::new(), row: -1, told: 0 };
+    let mut state = State { filling, edges, entered: 0, active: Vec::new(), row: -1, entries: 0 };
     Ok(Frames::new(steps, move |step, want| state.show(step, want)))
 }
 
@@ -125,9 +125,9 @@ impl State {
 
     /// Puts an entry of the row in its place.
     fn take_active(&mut self, y: i32, edge: Edge) -> Caption {
-        self.told = if y == self.row { self.told + 1 } else { 1 };
+        self.entries = if y == self.row { self.entries + 1 } else { 1 };
         self.row = y;
-        let place = self.told - 1;
+        let place = self.entries - 1;
         // A faulty program may report entries that another row has, or no row.
         let rest = || self.active.iter().skip(place).map(|(_, other)| other);
         let found = rest().position(|other| *other == edge);
@@ -143,7 +143,7 @@ impl State {
         ACTIVE.with([
             ("row", y.into()),
             ("edge", name.into()),
-            ("place", self.told.into()),
+            ("place", self.entries.into()),
             ("at", (edge.crossing() + 0.5).into()),
             ("x", edge.x.into()),
         ])

@@ -168,14 +168,14 @@ impl SmoothSurface {
     ) {
         let faces = seen.faces;
         let added: Vec<u32> = items.iter().copied().filter(|i| near[*i as usize]).collect();
-        let mut asked = vec![false; faces.points().len()];
+        let mut requested = vec![false; faces.points().len()];
         for t in added.iter().filter_map(|item| faces.triangle(*item)) {
-            t.iter().for_each(|v| asked[*v as usize] = true);
+            t.iter().for_each(|v| requested[*v as usize] = true);
         }
         let mut of_added = vec![[DVec3::ZERO; 3]; added.len()];
         let mut place = vec![NONE; faces.len()];
         added.iter().zip(0..).for_each(|(item, i)| place[*item as usize] = i);
-        let found = normals(directions, items, &asked, |item| place[item as usize] != NONE);
+        let found = normals(directions, items, &requested, |item| place[item as usize] != NONE);
         for (item, corner, normal) in found.into_iter().flatten() {
             of_added[place[item as usize] as usize][usize::from(corner)] = normal;
         }

@@ -310,21 +310,21 @@ impl Around {
 }
 
 /// Returns the normals of the corners of triangles that are `wanted`, by item and corner, in no particular order. All
-/// vertices of those triangles are `asked`; `items` are in order.
+/// vertices of those triangles are `requested`; `items` are in order.
 pub(super) fn normals(
     directions: &Directions<'_>,
     items: &[u32],
-    asked: &[bool],
+    requested: &[bool],
     wanted: impl Fn(u32) -> bool + Sync + Send,
 ) -> Vec<Vec<(u32, u8, DVec3)>> {
     let corners = || {
         let triangles =
             items.iter().filter_map(|item| Some((*item, directions.faces.triangle(*item)?)));
         let all = triangles.flat_map(|(item, t)| (0..3).map(move |k| (item, k, t[k])));
-        all.filter(|(_, _, v)| asked[*v as usize]).map(|(item, k, v)| (item, k as u8, v))
+        all.filter(|(_, _, v)| requested[*v as usize]).map(|(item, k, v)| (item, k as u8, v))
     };
     // By vertex, at each in item order.
-    let mut ends = vec![0_u32; asked.len() + 1];
+    let mut ends = vec![0_u32; requested.len() + 1];
     corners().for_each(|(_, _, v)| ends[v as usize + 1] += 1);
     let mut sum = 0;
     for end in &mut ends {
@@ -341,7 +341,7 @@ pub(super) fn normals(
     let of = |first: usize| {
         let (mut found, mut group) = (Vec::new(), Vec::new());
         let mut start = if first == 0 { 0 } else { ends[first - 1] as usize };
-        for end in &ends[first..asked.len().min(first + JOB)] {
+        for end in &ends[first..requested.len().min(first + JOB)] {
             group.clear();
             group.extend(sorted[start..*end as usize].iter().filter_map(around));
             start = *end as usize;
@@ -355,7 +355,7 @@ pub(super) fn normals(
         }
         found
     };
-    parallel::map((0..asked.len()).step_by(JOB).collect(), of)
+    parallel::map((0..requested.len()).step_by(JOB).collect(), of)
 }
 
 /// Calls `f` with the normal of each triangle around a vertex, which are in item order: one for all where it is round,

@@ -46,14 +46,14 @@ fn every_slope_follows_its_e_in_all_octants_and_both_directions() {
         }
         assert_eq!(steps[0].e, 2 * short - long);
         // The lit pixels are those of the steps.
-        let (mut lit, mut told) = (Vec::new(), places(&steps));
+        let (mut lit, mut reported) = (Vec::new(), places(&steps));
         let (from, to) = (IVec2::new(3, -2), IVec2::new(3 + dx, dy - 2));
         let options = Default::default();
         let plot = |p: IVec2| lit.push((p.x, p.y));
         LineRasterizer::Bresenham.draw(from, to, &options, plot, &mut NoTrace);
         lit.sort_unstable();
-        told.sort_unstable();
-        assert_eq!(lit, told, "{dx} {dy}");
+        reported.sort_unstable();
+        assert_eq!(lit, reported, "{dx} {dy}");
     }
 }
 

@@ -447,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn heights_that_round_alike_are_told_apart() {
+    fn heights_that_round_alike_are_reported_apart() {
         let (far, mut state) = (i64::LIMIT, 11_u64);
         let mut random = |range: i64| {
             let step = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);

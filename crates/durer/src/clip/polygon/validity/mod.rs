@@ -281,46 +281,50 @@ pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> 
     all.then_some(points)
 }
 
-/// Calls `tell` with the points of each fault, or without a fault if there are too many comparisons, as long as it
+/// Calls `visit` with the points of each fault, or without a fault if there are too many comparisons, as long as it
 /// returns true; returns whether it always did.
-fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+fn each_fault(
+    shapes: &Shapes,
+    touching: Touching,
+    mut visit: impl FnMut(&[usize]) -> bool,
+) -> bool {
     if shapes.points().len() <= few::FEW && few::are_apart(shapes) {
         return true;
     }
-    each_fault_of_many(shapes, touching, &mut tell)
+    each_fault_of_many(shapes, touching, &mut visit)
 }
 
 /// Does the same by sorted edges.
 fn each_fault_of_many(
     shapes: &Shapes,
     touching: Touching,
-    tell: &mut impl FnMut(&[usize]) -> bool,
+    visit: &mut impl FnMut(&[usize]) -> bool,
 ) -> bool {
     for ring in 0..shapes.ring_count() {
         let range = shapes.ring_range(ring);
-        if range.len() < 3 && !tell(&[range.start]) {
+        if range.len() < 3 && !visit(&[range.start]) {
             return false;
         }
     }
     let edges = edges_of(shapes);
-    if !edges.iter().filter(|e| e.a == e.b).all(|e| tell(&e.ends)) {
+    if !edges.iter().filter(|e| e.a == e.b).all(|e| visit(&e.ends)) {
         return false;
     }
     let size = |ring: usize| shapes.ring_range(ring).len();
     let most = edges.len().saturating_mul(PAIRS_PER_EDGE);
-    let mut told = true;
+    let mut goes_on = true;
     let all = each_pair(&edges, most, |p, q| {
         let apart = match meeting(p, q) {
             Meeting::Apart => true,
             Meeting::Crossing | Meeting::Overlap(_) => false,
             Meeting::Touch(at) => may_touch(p, q, at, size(p.ring), touching),
         };
-        told = apart || tell(&[p.ends[0], p.ends[1], q.ends[0], q.ends[1]]);
-        told
+        goes_on = apart || visit(&[p.ends[0], p.ends[1], q.ends[0], q.ends[1]]);
+        goes_on
     });
     // Too many comparisons, unless the answer was no.
-    let all = all || told && tell(&[]);
-    all && (touching == Touching::No || each_passage(shapes, tell))
+    let all = all || goes_on && visit(&[]);
+    all && (touching == Touching::No || each_passage(shapes, visit))
 }
 
 /// Returns whether two edges may touch in a point.
@@ -337,9 +341,9 @@ fn are_neighbours(p: &Edge, q: &Edge, size: usize) -> bool {
     p.ring == q.ring && ((p.index + 1) % size == q.index || (q.index + 1) % size == p.index)
 }
 
-/// Calls `tell` with the vertices in which rings do not only touch but pass through each other, as long as it returns
+/// Calls `visit` with the vertices in which rings do not only touch but pass through each other, as long as it returns
 /// true; returns whether it always did.
-fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+fn each_passage(shapes: &Shapes, mut visit: impl FnMut(&[usize]) -> bool) -> bool {
     let of_ring = |ring| shapes.ring_range(ring).zip(ways(shapes.ring(ring)));
     let mut ways: Vec<(usize, Way)> = (0..shapes.ring_count()).flat_map(of_ring).collect();
     // Zeros of either sign are one place.
@@ -349,7 +353,7 @@ fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool
     ways.compact_sort_by(|(_, [p, ..]), (_, [q, ..])| order(p, q));
     ways.chunk_by(|(_, [p, ..]), (_, [q, ..])| p == q).all(|through| {
         through.iter().enumerate().all(|(i, &(index, way))| {
-            through[..i].iter().all(|&(other, w)| ways_touch(way, w) || tell(&[index, other]))
+            through[..i].iter().all(|&(other, w)| ways_touch(way, w) || visit(&[index, other]))
         })
     })
 }

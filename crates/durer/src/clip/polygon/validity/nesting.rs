@@ -27,12 +27,12 @@ pub fn nests(shapes: &Shapes) -> bool {
     nests
 }
 
-/// Calls `tell` for each misplaced ring, as long as it returns true; the edges do not meet. O(n log n) if no ring is
+/// Calls `visit` for each misplaced ring, as long as it returns true; the edges do not meet. O(n log n) if no ring is
 /// misplaced, otherwise O(n + k) for k pairs of rings of which one's box contains the other's.
-pub fn each_misplaced(shapes: &Shapes, tell: impl FnMut(Flaw) -> bool) {
+pub fn each_misplaced(shapes: &Shapes, visit: impl FnMut(Flaw) -> bool) {
     let rings = rings_of(shapes);
     if !is_crowded(&rings) || !alternates(shapes) {
-        each_misplaced_of(&rings, tell);
+        each_misplaced_of(&rings, visit);
     }
 }
 
@@ -81,7 +81,7 @@ fn rings_of(shapes: &Shapes) -> Vec<Ring<'_>> {
         .collect()
 }
 
-fn each_misplaced_of(rings: &[Ring<'_>], mut tell: impl FnMut(Flaw) -> bool) {
+fn each_misplaced_of(rings: &[Ring<'_>], mut visit: impl FnMut(Flaw) -> bool) {
     let mut at_home = vec![false; rings.len()];
     let mut within = Vec::new();
     let mut go_on = true;
@@ -90,7 +90,7 @@ fn each_misplaced_of(rings: &[Ring<'_>], mut tell: impl FnMut(Flaw) -> bool) {
         match (a.polygon == b.polygon, (a.is_hole(), b.is_hole())) {
             (true, (true, false)) => at_home[inner] = a.lies_in(b),
             (true, (true, true)) if a.lies_in(b) => {
-                go_on = tell(a.flaw(Fault::HoleInHole, b.index))
+                go_on = visit(a.flaw(Fault::HoleInHole, b.index))
             }
             (false, (false, _)) if a.lies_in(b) => within.push((inner, b.polygon)),
             _ => {}
@@ -107,7 +107,7 @@ fn each_misplaced_of(rings: &[Ring<'_>], mut tell: impl FnMut(Flaw) -> bool) {
     let homeless = rings.iter().zip(at_home).filter(|(ring, home)| ring.is_hole() && !home);
     let homeless = homeless.map(|(ring, _)| ring.flaw(Fault::HoleOutside, ring.outer));
     for flaw in inside.chain(homeless) {
-        go_on = go_on && tell(flaw);
+        go_on = go_on && visit(flaw);
     }
 }
 
@@ -200,16 +200,16 @@ mod tests {
     }
 
     #[test]
-    fn many_rings_in_one_another_are_told_as_few_are() {
+    fn many_rings_in_one_another_are_reported_as_few_are() {
         for (shapes, right) in [(squares(100, None), true), (squares(100, Some(60)), false)] {
             let rings = rings_of(&shapes);
             assert!(is_crowded(&rings));
-            let mut told = 0;
+            let mut count = 0;
             each_misplaced_of(&rings, |_| {
-                told += 1;
+                count += 1;
                 true
             });
-            assert_eq!((told == 0, alternates(&shapes), nests(&shapes)), (right, right, right));
+            assert_eq!((count == 0, alternates(&shapes), nests(&shapes)), (right, right, right));
         }
         assert!(!is_crowded(&rings_of(&squares(2, None))));
     }

@@ -301,8 +301,8 @@ mod tests {
         let found = of_polygons(&Shapes::from_rings([far]), RULE, &options(1e17)).expect("buffer");
         assert!((found.bounds().expect("something").max() / 6e17 - 1.0).abs().max_element() < 1e-3);
         for distance in [1e300, -1e300, f64::MAX] {
-            let told = of_polygons(&block, RULE, &options(distance)).expect_err("too far");
-            assert!(told.to_string().contains("within ±1e299"), "{told}");
+            let refusal = of_polygons(&block, RULE, &options(distance)).expect_err("too far");
+            assert!(refusal.to_string().contains("within ±1e299"), "{refusal}");
         }
     }
 

@@ -350,11 +350,11 @@ impl<'a> Walk<'a> {
         let Some(part) = part else { return };
         let mut hidden = std::mem::take(&mut self.hidden);
         self.horizon.hidden(part.ends[0], part.ends[1], &mut hidden);
-        let tell = |range: [f64; 2], visible: bool| {
+        let piece_of = |range: [f64; 2], visible: bool| {
             place.piece(range.map(|s| part.along(s)), visible, underside)
         };
-        let seen = gaps(&hidden).into_iter().map(|r| tell(r, true));
-        let unseen = hidden.iter().filter(|_| self.options.hidden).map(|&r| tell(r, false));
+        let seen = gaps(&hidden).into_iter().map(|r| piece_of(r, true));
+        let unseen = hidden.iter().filter(|_| self.options.hidden).map(|&r| piece_of(r, false));
         for piece in seen.chain(unseen) {
             keep(piece, self.pieces, t);
         }

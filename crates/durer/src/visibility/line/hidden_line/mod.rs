@@ -227,8 +227,8 @@ pub fn draw(
     let mut edges = faces.take_edges();
     let count = edges.count();
     let wanted = options.classes.contains(LineClass::Tangent);
-    let asked = wanted || options.neighbours || options.smooth != Smooth::Off;
-    let planes = asked.then(|| Planes::new(&faces));
+    let requested = wanted || options.neighbours || options.smooth != Smooth::Off;
+    let planes = requested.then(|| Planes::new(&faces));
     let mesh = (&faces, &edges);
     let known = |wanted: bool| planes.as_ref().filter(|_| wanted);
     let tangents = known(wanted).map(|p| Tangents::new(mesh, p, options.crease));

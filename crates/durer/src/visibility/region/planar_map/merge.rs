@@ -152,7 +152,7 @@ pub fn lines(map: &Planar, keep: impl Fn(usize) -> bool) -> Vec<(Vec<u32>, bool)
 const MOST_DROPPED: usize = 64;
 
 /// Reports the inner vertices of a chain that lie within a grid step of the line past them.
-fn straight(map: &Planar, chain: &[u32], mut tell: impl FnMut(u32)) {
+fn straight(map: &Planar, chain: &[u32], mut visit: impl FnMut(u32)) {
     let at = |i: usize| map.points[chain[i] as usize];
     let mut from = 0;
     let inner = chain.iter().enumerate().take(chain.len().saturating_sub(1)).skip(1);
@@ -165,7 +165,7 @@ fn straight(map: &Planar, chain: &[u32], mut tell: impl FnMut(u32)) {
             forward && (cross(a, b, p) as f64).abs() <= reach
         };
         if i - from <= MOST_DROPPED && (from + 1..=i).all(near) {
-            tell(vertex);
+            visit(vertex);
         } else {
             from = i;
         }

@@ -105,7 +105,7 @@ impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
             for k in start..end {
                 for &i in &self.strips.lists[rest.0 as usize..rest.1 as usize] {
                     if self.segments[i as usize].hits_pixel(self.open[k].at) {
-                        self.tell(i, k);
+                        self.report(i, k);
                     }
                 }
             }
@@ -139,7 +139,7 @@ impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
             while above < stairs.len() && side(&stairs[above]) == Ordering::Equal {
                 // A stair's line hits; it counts only within the y range of the segment itself.
                 if self.segments[stairs[above] as usize].hits_pixel(at) {
-                    self.tell(stairs[above], k);
+                    self.report(stairs[above], k);
                 }
                 above += 1;
             }
@@ -153,7 +153,7 @@ impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
         }
     }
 
-    fn tell(&mut self, segment: u32, pixel: usize) {
+    fn report(&mut self, segment: u32, pixel: usize) {
         let Pixel { name, twice, .. } = self.open[pixel];
         if twice {
             self.twice.push((segment, name));

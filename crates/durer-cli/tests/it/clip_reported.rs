@@ -6,14 +6,14 @@ use crate::harness::{Ended, Folder};
 use serde_json::Value;
 
 #[test]
-fn what_is_wrong_with_the_mask_is_told_of_the_mask() {
+fn what_is_wrong_with_the_mask_is_reported_of_the_mask() {
     let folder = folder();
     folder.write("dent.wkt", "POLYGON((0 0,3 0,1 1,0 3,0 0))");
     folder.write("two.wkt", "POLYGON((0 0,1 0,1 1,0 0))\nPOLYGON((2 2,3 2,3 3,2 2))");
     folder.write("bad.geojson", "{\"type\":\"Polygon\",\n\"coordinates\":[[[0,0],[3,oops]]]}");
     folder.write("right.wkt", "POLYGON((0 0,3 0,0 3,0 0))");
     let hodgman = "--algorithm sutherland-hodgman";
-    for (mask, options, told) in [
+    for (mask, options, printed) in [
         ("dent.wkt", hodgman, "dent.wkt: polygon is a ring of 4 vertices; it must be convex"),
         ("two.wkt", hodgman, "two.wkt: a clip polygon that is not one ring"),
         ("bad.geojson", "", "bad.geojson: line 2, column 26: "),
@@ -24,7 +24,7 @@ fn what_is_wrong_with_the_mask_is_told_of_the_mask() {
         ),
     ] {
         let line = format!("clip in.geojson --by {mask} {options} -o o.geojson");
-        folder.run(&line).fails(1, told);
+        folder.run(&line).fails(1, printed);
     }
     folder.must(&format!("clip in.geojson --by right.wkt {hodgman} -o o.geojson"));
     let empty =
@@ -33,15 +33,15 @@ fn what_is_wrong_with_the_mask_is_told_of_the_mask() {
 }
 
 #[test]
-fn masks_that_are_made_valid_are_told() {
+fn masks_that_are_made_valid_are_reported() {
     let folder = Folder::new();
     folder.write("in.wkt", "POLYGON((0 0,4 0,4 4,0 4,0 0))");
     folder.write("bow.wkt", "POLYGON((0 0,3 3,3 0,0 3,0 0))");
     folder.write("right.wkt", "POLYGON((0 0,3 0,0 3,0 0))");
-    let told = |mask: &str| folder.must(&format!("clip in.wkt --by {mask} -o o.wkt")).err;
-    assert!(told("bow.wkt").contains("bow.wkt: polygons crossed"), "{}", told("bow.wkt"));
-    assert_eq!(told("right.wkt"), "");
-    assert_eq!(told("bow.wkt --fill-rule non-zero"), "");
+    let printed = |mask: &str| folder.must(&format!("clip in.wkt --by {mask} -o o.wkt")).err;
+    assert!(printed("bow.wkt").contains("bow.wkt: polygons crossed"), "{}", printed("bow.wkt"));
+    assert_eq!(printed("right.wkt"), "");
+    assert_eq!(printed("bow.wkt --fill-rule non-zero"), "");
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn coordinate_systems_are_kept_or_named() {
     assert!(text.starts_with("SRID=4326;POINT (1 2)\nPOINT (3 4)\nSRID=4326;POLYGON"), "{text}");
     folder.must("clip a.wkt --op union -o o.wkt");
     assert!(folder.read("o.wkt").starts_with(b"SRID=4326;POLYGON"));
-    for (line, told) in [
+    for (line, printed) in [
         (
             "clip b.wkt --window 0,0,9,9 -o o.geojson",
             "SRIDs 4326, 3857 are left out: geojson has no place for it",
@@ -97,7 +97,7 @@ fn coordinate_systems_are_kept_or_named() {
         ),
     ] {
         let ended = folder.must(line);
-        assert_eq!(ended.err.matches(told).count(), 1, "{line}: {}", ended.err);
+        assert_eq!(ended.err.matches(printed).count(), 1, "{line}: {}", ended.err);
     }
 }
 
@@ -109,12 +109,12 @@ fn all_coordinate_systems_are_named() {
     };
     folder.write("two.wkt", points(0..2));
     folder.write("many.wkt", points(0..70));
-    for (name, told) in [
+    for (name, printed) in [
         ("two", "SRIDs 3000, 3001 are left out: geojson"),
         ("many", "SRIDs 3000, 3001, 3002, 3003 and others are left out"),
     ] {
         let ended = folder.must(&format!("clip {name}.wkt --window 0,0,9,9 -o o.geojson"));
-        assert!(ended.err.contains(told), "{}", ended.err);
+        assert!(ended.err.contains(printed), "{}", ended.err);
     }
     folder.write("mask.wkt", "SRID=4326;POLYGON((0 0,9 0,9 9,0 0))");
     let ended = folder.must("clip two.wkt --by mask.wkt -o o.wkt");
@@ -122,7 +122,7 @@ fn all_coordinate_systems_are_named() {
 }
 
 #[test]
-fn a_full_standard_output_is_told_by_its_name() {
+fn a_full_standard_output_is_reported_by_its_name() {
     let Ok(full) = std::fs::OpenOptions::new().write(true).open("/dev/full") else { return };
     let folder = Folder::new();
     folder.write("a.wkt", "POINT(1 2)\n".repeat(20_000));
@@ -132,15 +132,15 @@ fn a_full_standard_output_is_told_by_its_name() {
 }
 
 #[test]
-fn grids_too_fine_are_told_what_would_do() {
+fn grids_too_fine_are_reported_what_would_do() {
     let folder = Folder::new();
     folder.write("a.wkt", "POLYGON((0 0,9 0,9 9,0 0))");
-    for (grid, told) in [
+    for (grid, printed) in [
         ("1e-300", "grid is 1e-300, where 8e-12 would do; it must be coarse enough"),
         ("1e-310", "grid is 1e-310; it must be a finite size above zero, from 2.3e-308 on"),
     ] {
         let line = format!("clip a.wkt --window 0,0,5,5 -o o.wkt --grid {grid}");
-        folder.run(&line).fails(1, told);
+        folder.run(&line).fails(1, printed);
     }
     folder.must("clip a.wkt --window 0,0,5,5 -o o.wkt --grid 8e-12");
 }
@@ -152,8 +152,8 @@ fn an_empty_file_of_any_format_has_no_features() {
         let name = format!("empty.{suffix}");
         folder.write(&name, "");
         let ended = folder.must(&format!("clip {name} --window 0,0,5,5 -o o.geojson"));
-        let told = format!("{name}: there is no feature in it");
-        assert_eq!(ended.err.matches(&told).count(), 1, "{}", ended.err);
+        let printed = format!("{name}: there is no feature in it");
+        assert_eq!(ended.err.matches(&printed).count(), 1, "{}", ended.err);
         assert!(folder.read("o.geojson").starts_with(b"{\"type\":\"FeatureCollection\""));
     }
     folder.write("empty.svg", "");
@@ -171,7 +171,7 @@ fn tiles_to_a_stream_are_geojson_whatever_comes_in() {
 }
 
 #[test]
-fn masks_too_small_for_the_grid_are_told() {
+fn masks_too_small_for_the_grid_are_reported() {
     let folder = Folder::new();
     folder.write("a.wkt", "POLYGON((0 0,1 0,1 1,0 1,0 0))\nPOLYGON((0 0,1e6 0,1e6 1e6,0 1e6,0 0))");
     let small =
@@ -180,8 +180,8 @@ fn masks_too_small_for_the_grid_are_told() {
     for (size, features) in [("0.5000001", 1), ("0.75", 0)] {
         folder.write("mask.wkt", small(size));
         let ended = folder.must("clip a.wkt --by mask.wkt -o o.wkt --json");
-        let told = "may be lost at 1 feature";
-        assert_eq!(ended.err.contains(told), features > 0, "{size}: {}", ended.err);
+        let printed = "may be lost at 1 feature";
+        assert_eq!(ended.err.contains(printed), features > 0, "{size}: {}", ended.err);
     }
     folder.write("mask.wkt", format!("{}\nPOLYGON((0 0,1e6 0,1e6 1e6,0 0))", small("0.5000001")));
     let ended = folder.must("clip a.wkt --by mask.wkt -o o.wkt");

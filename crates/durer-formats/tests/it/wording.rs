@@ -157,14 +157,17 @@ fn are_our_words(messages: &[String]) {
 }
 
 #[test]
-fn faults_of_xml_are_told_in_our_words() {
+fn faults_of_xml_are_reported_in_our_words() {
     for (file, expected) in FAULTS {
         let drawing =
             file.replacen("<R", "<R xmlns='http://www.w3.org/2000/svg'", 1).replace('R', "svg");
-        let told = svg::Drawing::read(drawing.as_bytes(), &svg::ReadOptions::default());
-        let told = told.expect_err(file).to_string();
-        assert!(told.starts_with("line 1, column ") && told.contains(expected), "{file:?}: {told}");
-        are_our_words(&[told]);
+        let warned = svg::Drawing::read(drawing.as_bytes(), &svg::ReadOptions::default());
+        let warned = warned.expect_err(file).to_string();
+        assert!(
+            warned.starts_with("line 1, column ") && warned.contains(expected),
+            "{file:?}: {warned}"
+        );
+        are_our_words(&[warned]);
         for (name, root) in [("a.dae", "COLLADA"), ("a.x3d", "X3D"), ("a.amf", "amf")] {
             are_our_words(&said_of_model(name, file.replace('R', root).as_bytes()));
         }
@@ -177,7 +180,7 @@ fn faults_of_xml_are_told_in_our_words() {
 }
 
 #[test]
-fn faults_of_json_are_told_in_our_words() {
+fn faults_of_json_are_reported_in_our_words() {
     for fault in [
         "",
         "{",
@@ -207,9 +210,9 @@ fn drawings_of_too_many_elements_are_not_called_ill_formed() {
         "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><g id='a'>{}</g>{uses}</svg>",
         "<rect width='1' height='1'/>".repeat(1000)
     );
-    let told = svg::Drawing::read(twice.as_bytes(), &svg::ReadOptions::default());
-    let told = told.expect_err("too many").to_string();
-    assert!(told.contains("1,000,000 elements") && !told.contains("well-formed"), "{told}");
+    let warned = svg::Drawing::read(twice.as_bytes(), &svg::ReadOptions::default());
+    let warned = warned.expect_err("too many").to_string();
+    assert!(warned.contains("1,000,000 elements") && !warned.contains("well-formed"), "{warned}");
 }
 
 /// Returns prefixes of a file, and the file with some of its bytes changed.

@@ -26,7 +26,7 @@ pub fn cut(text: &str) -> Cow<'_, str> {
 /// Returns a number with what is counted, e.g. `1 feature has` or `2 features have`.
 ///
 /// ```
-/// use durer_formats::told::counted;
+/// use durer_formats::wording::counted;
 /// assert_eq!(counted(1, "feature has", "features have"), "1 feature has");
 /// assert_eq!(counted(0, "feature has", "features have"), "0 features have");
 /// ```
@@ -37,23 +37,23 @@ pub fn counted(count: u64, one: &str, several: &str) -> String {
 /// Returns a number and words that agree with it: of each `{one|several}` in the words, the first if the number is 1.
 ///
 /// ```
-/// use durer_formats::told::agreeing;
+/// use durer_formats::wording::agreeing;
 /// let words = "{face has|faces have} two corners; {it is|they are} left out";
 /// assert_eq!(agreeing(1, words), "1 face has two corners; it is left out");
 /// assert_eq!(agreeing(2, words), "2 faces have two corners; they are left out");
 /// ```
 pub fn agreeing(count: u64, words: &str) -> String {
-    let mut told = count.to_string() + " ";
+    let mut out = count.to_string() + " ";
     let mut rest = words;
     while let Some((before, choice)) = rest.split_once('{')
         && let Some((choice, after)) = choice.split_once('}')
     {
         let (one, several) = choice.split_once('|').unwrap_or((choice, choice));
-        told += before;
-        told += if count == 1 { one } else { several };
+        out += before;
+        out += if count == 1 { one } else { several };
         rest = after;
     }
-    told + rest
+    out + rest
 }
 
 /// Returns how many things there are, e.g. `there is 1` or `there are 2`.
@@ -84,15 +84,15 @@ pub fn escaped<'a>(text: impl Into<Cow<'a, str>>) -> Cow<'a, str> {
     if !text.chars().any(steers) {
         return text;
     }
-    let mut told = String::with_capacity(text.len() + 16);
+    let mut out = String::with_capacity(text.len() + 16);
     for c in text.chars() {
         if steers(c) {
-            told.extend(c.escape_default());
+            out.extend(c.escape_default());
         } else {
-            told.push(c);
+            out.push(c);
         }
     }
-    Cow::Owned(told)
+    Cow::Owned(out)
 }
 
 /// Returns equivalent JSON in which characters that reverse the writing direction or control a terminal are escaped in
@@ -102,18 +102,18 @@ pub fn json(text: &str) -> Cow<'_, str> {
     if !text.chars().any(written_out) {
         return Cow::Borrowed(text);
     }
-    let mut told = String::with_capacity(text.len() + 16);
+    let mut out = String::with_capacity(text.len() + 16);
     for c in text.chars() {
         if written_out(c) {
             for unit in c.encode_utf16(&mut [0; 2]) {
                 // Writing to a string cannot fail.
-                let _ = write!(told, "\\u{unit:04x}");
+                let _ = write!(out, "\\u{unit:04x}");
             }
         } else {
-            told.push(c);
+            out.push(c);
         }
     }
-    Cow::Owned(told)
+    Cow::Owned(out)
 }
 
 /// Returns a message that quotes text of a file, safe for a terminal: escaped, with the text between backticks cut as
@@ -123,15 +123,15 @@ pub fn message(text: &str) -> Cow<'_, str> {
     if text.len() <= NUMBER || (text.len() <= WORDS && !has_long_number(text)) {
         return escaped(text);
     }
-    let mut told = String::new();
+    let mut out = String::new();
     for (i, part) in text.split('`').enumerate() {
         let quoted = i % 2 == 1;
         if i > 0 {
-            told.push('`');
+            out.push('`');
         }
-        told += &if quoted { cut(part) } else { with_short_numbers(part) };
+        out += &if quoted { cut(part) } else { with_short_numbers(part) };
     }
-    Cow::Owned(escaped(cut_at(&told, MESSAGE)).into_owned())
+    Cow::Owned(escaped(cut_at(&out, MESSAGE)).into_owned())
 }
 
 /// Returns whether a character controls the display, or the characters beside it.
@@ -159,7 +159,7 @@ fn with_short_numbers(text: &str) -> Cow<'_, str> {
     if !has_long_number(text) {
         return Cow::Borrowed(text);
     }
-    let mut told = String::new();
+    let mut out = String::new();
     let mut rest = text;
     for run in text.as_bytes().chunk_by(|&a, &b| of_number(a) == of_number(b)) {
         // Runs end beside ASCII characters, so between characters.
@@ -167,11 +167,11 @@ fn with_short_numbers(text: &str) -> Cow<'_, str> {
         rest = after;
         match run_text.parse::<f64>().ok().filter(|_| is_long_number(run)) {
             // Writing to a string cannot fail.
-            Some(number) => drop(write!(told, "{}", short(number))),
-            None => told.push_str(run_text),
+            Some(number) => drop(write!(out, "{}", short(number))),
+            None => out.push_str(run_text),
         }
     }
-    Cow::Owned(told)
+    Cow::Owned(out)
 }
 
 /// Returns a number with few digits: single precision is enough to find it in the file.
@@ -188,13 +188,13 @@ mod tests {
 
     #[test]
     fn what_steers_is_written_out() {
-        for (text, told) in [
+        for (text, out) in [
             ("a\u{1b}[31mX\n\rdurer: b", r"a\u{1b}[31mX\n\rdurer: b"),
             ("a\u{202e}b\u{2066}c\u{9b}", r"a\u{202e}b\u{2066}c\u{9b}"),
             ("Größe, 大きさ, 👩‍🚀, \u{301}", "Größe, 大きさ, 👩‍🚀, \u{301}"),
         ] {
-            assert_eq!(shown(text), told);
-            assert_eq!(message(told), told);
+            assert_eq!(shown(text), out);
+            assert_eq!(message(out), out);
         }
     }
 
@@ -203,11 +203,11 @@ mod tests {
         let name = "é".repeat(500);
         assert_eq!(shown(&name).chars().count(), 120);
         assert_eq!(shown(&name[..240]), &name[..240]);
-        let told =
+        let out =
             message(&format!("material `{name}` is not defined; a grey one is used")).into_owned();
         assert!(
-            told.starts_with("material `éé")
-                && told.ends_with("é…` is not defined; a grey one is used")
+            out.starts_with("material `éé")
+                && out.ends_with("é…` is not defined; a grey one is used")
         );
         assert_eq!(message(&"`".repeat(5000)).chars().count(), 1000);
         let path = format!("/{name}/model.obj");
@@ -220,9 +220,9 @@ mod tests {
     fn json_says_the_same() {
         let names = ["a\u{202e}b\n", "\u{e0041}\u{7f}", "é"];
         let text = serde_json::to_string_pretty(&names).unwrap();
-        let told = json(&text);
-        assert!(told.contains(r"a\u202eb\n") && told.contains(r"\udb40\udc41\u007f"), "{told}");
-        assert_eq!(serde_json::from_str::<[String; 3]>(&told).unwrap(), names);
+        let out = json(&text);
+        assert!(out.contains(r"a\u202eb\n") && out.contains(r"\udb40\udc41\u007f"), "{out}");
+        assert_eq!(serde_json::from_str::<[String; 3]>(&out).unwrap(), names);
     }
 
     #[test]
