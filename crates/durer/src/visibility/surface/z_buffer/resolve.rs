@@ -132,7 +132,7 @@ fn resolve_block<S: Simd>(
     }
 }
 
-/// What the pixels of a block show.
+/// Items and background that the pixels of a block show.
 struct Shown<S: Simd> {
     /// The item that all samples of a pixel show, or [`NO_ITEM`].
     whole: u32x16<S>,
@@ -142,7 +142,7 @@ struct Shown<S: Simd> {
     background: f32x16<S>,
 }
 
-/// Returns what the pixels of a block with these samples show.
+/// Returns the items and the background that the pixels of a block with these samples show.
 #[inline(always)]
 fn shown<S: Simd>(simd: S, samples: &[u32x16<S>]) -> Shown<S> {
     let none = u32x16::splat(simd, NO_ITEM);
