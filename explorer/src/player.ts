@@ -98,15 +98,15 @@ export class Player extends EventTarget {
     const { input, operation, rule, fault } = setup;
     try {
       const choices = this.run === undefined;
-      const asked = { name: this.lesson.name, input, operation, rule, fault };
+      const request = { name: this.lesson.name, input, operation, rule, fault };
       // Pending work for the last input is useless now.
       this.patient.stop();
-      const run = await this.shared.run({ ...asked, cap: Math.min(cap, FIRST), choices });
+      const run = await this.shared.run({ ...request, cap: Math.min(cap, FIRST), choices });
       if (run.steps === 0) throw new Refused(t("noState"));
       if (run.choices) this.choices = run.choices;
       this.error = "";
       this.replace(run, this.shared, step);
-      if (cap > FIRST && run.templates.at(-1)! < 0) void this.extend({ ...asked, cap }, run, step);
+      if (cap > FIRST && run.templates.at(-1)! < 0) void this.extend({ ...request, cap }, run, step);
       await this.show();
     } catch (e) {
       if (!(e instanceof Refused || e instanceof Trapped)) throw e;
@@ -129,9 +129,9 @@ export class Player extends EventTarget {
   }
 
   /** Runs all steps in a separate engine, while the first ones can already be viewed. */
-  private async extend(asked: RunRequest, first: Run, step: number): Promise<void> {
+  private async extend(request: RunRequest, first: Run, step: number): Promise<void> {
     try {
-      const run = await this.patient.run(asked);
+      const run = await this.patient.run(request);
       if (this.run !== first) return;
       // A user who has moved to another step stays there.
       this.replace(run, this.patient, this.step === first.steps - 1 ? step : this.step);

@@ -57,22 +57,22 @@ function answer(engine: Exports, { request, file }: Asked): { kind: number; byte
 }
 
 self.onmessage = async (event: MessageEvent<Asked | { url: string }>) => {
-  const asked = event.data;
-  if ("url" in asked) {
-    engine = load(asked.url);
+  const request = event.data;
+  if ("url" in request) {
+    engine = load(request.url);
     engine.catch((e: unknown) => self.postMessage({ id: 0, failed: String(e) }));
     return;
   }
   try {
-    const { kind, bytes } = answer(await engine!, asked);
+    const { kind, bytes } = answer(await engine!, request);
     if (kind === 1) {
-      self.postMessage({ id: asked.id, bytes }, { transfer: [bytes.buffer] });
+      self.postMessage({ id: request.id, bytes }, { transfer: [bytes.buffer] });
     } else {
       const value: unknown = JSON.parse(new TextDecoder().decode(bytes));
-      self.postMessage({ id: asked.id, value, refused: kind === 2 });
+      self.postMessage({ id: request.id, value, refused: kind === 2 });
     }
   } catch (e) {
     // A trap leaves the engine in an unknown state: the page starts another one.
-    self.postMessage({ id: asked.id, trapped: String(e) });
+    self.postMessage({ id: request.id, trapped: String(e) });
   }
 };

@@ -49,8 +49,8 @@ def start(args, out, *options):
 
 
 def finish(process):
-    _, told = process.communicate()
-    return process.returncode, told
+    _, printed = process.communicate()
+    return process.returncode, printed
 
 
 def outputs(out):
@@ -118,27 +118,27 @@ def disturbed(args, out, seconds, chance):
             counts[kind] += 1
             continue
         if refused < 3:
-            code, told = finish(start(args, out, "--resume"))
-            refused += code == 1 and "another process works on shard 0/1" in told
+            code, printed = finish(start(args, out, "--resume"))
+            refused += code == 1 and "another process works on shard 0/1" in printed
         workers, begun = children(process.pid), time.monotonic()
         kill(process.pid, signal.SIGTERM if kind == "term" else signal.SIGKILL)
-        code, told = finish(process)
+        code, printed = finish(process)
         counts[kind] += 1
         if kind == "term":
             slowest = max(slowest, time.monotonic() - begun)
             if code != 3:
-                check(False, f"SIGTERM ends with {code}, not 3: {told}")
+                check(False, f"SIGTERM ends with {code}, not 3: {printed}")
         else:
             torn += tear(out, chance)
         process = start(args, out, "--resume")
-    code, told = finish(process)
+    code, printed = finish(process)
     check(refused == 3, f"a second process on a shard is refused ({refused} of 3 times)")
     check(slowest < 25, f"SIGTERM ends the run in time ({slowest:.2f} s at most)")
     for _ in range(3):
         if code == 0:
             break
-        code, told = finish(start(args, out, "--resume"))
-    check(code == 0, f"the last run ends with 0: {told.strip()}")
+        code, printed = finish(start(args, out, "--resume"))
+    check(code == 0, f"the last run ends with 0: {printed.strip()}")
     return counts, torn
 
 
@@ -163,13 +163,13 @@ def full_disk(args, expected):
     disk.mkdir()
     subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={args.rows}k", "none", disk], check=True)
     try:
-        code, told = finish(start(args, disk / "out"))
-        check(code in (1, 3) and "No space left" in told, f"full disk: ends with {code}, and says why")
+        code, printed = finish(start(args, disk / "out"))
+        check(code in (1, 3) and "No space left" in printed, f"full disk: ends with {code}, and says why")
         part = outputs(disk / "out")
         check(all(expected[n] == h for n, h in part.items()), f"full disk: the {len(part)} files that are there are whole")
         subprocess.run(["mount", "-o", "remount,size=1g", disk], check=True)
-        code, told = finish(start(args, disk / "out", "--resume"))
-        check(code == 0, f"full disk: with room again the run ends with 0: {told.strip()}")
+        code, printed = finish(start(args, disk / "out", "--resume"))
+        check(code == 0, f"full disk: with room again the run ends with 0: {printed.strip()}")
         compare(args, disk / "out", expected, 2 * args.jobs, "full disk")
     finally:
         subprocess.run(["umount", disk], check=True)
@@ -189,14 +189,14 @@ def main():
     manifest(args.folder, args.samples, args.rows, args.kinds)
 
     begun = time.monotonic()
-    code, told = finish(start(args, args.folder / "base"))
+    code, printed = finish(start(args, args.folder / "base"))
     seconds = time.monotonic() - begun
-    check(code == 0, f"undisturbed: {told.strip()}")
+    check(code == 0, f"undisturbed: {printed.strip()}")
     expected = outputs(args.folder / "base")
     check(len(expected) == args.rows, f"undisturbed: {len(expected)} outputs")
     begun = time.monotonic()
-    code, told = finish(start(args, args.folder / "base", "--resume"))
-    check(code == 0 and f"{args.rows} done before" in told, f"resumed at the end: {told.strip()}")
+    code, printed = finish(start(args, args.folder / "base", "--resume"))
+    check(code == 0 and f"{args.rows} done before" in printed, f"resumed at the end: {printed.strip()}")
 
     counts, torn = disturbed(args, args.folder / "out", seconds, chance)
     killed = ", ".join(f"{count} of {kind}" for kind, count in counts.items())

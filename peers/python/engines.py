@@ -3,7 +3,7 @@
     unshare -rn sh -c 'ip link set lo up && python engines.py ray dask spark'
 
 A network namespace with nothing but loopback keeps engines that listen on all addresses to this machine. Ray gets two nodes, and a
-process of its actors is killed by SIGKILL while rows are rendered; `--rows 50000 --kill 0 ray` measures. CPU time is told beside
+process of its actors is killed by SIGKILL while rows are rendered; `--rows 50000 --kill 0 ray` measures. CPU time is given beside
 seconds, because it does not depend on what else a machine does: of all processes of an engine and of this one.
 """
 

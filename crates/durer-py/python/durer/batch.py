@@ -90,9 +90,9 @@ def clip_batch(batch: Any, mask: Any, *, geometry: str = "geometry", grid_size: 
     if isinstance(column, pa.ChunkedArray):
         column = column.combine_chunks()
     rows, errors = _durer.clip_wkb(to_wkb_list(column), region_of(mask), grid_size, count(None))
-    told = dict(errors)
+    by_row = dict(errors)
     columns = [pa.array(rows, column.type) if name == geometry else batch.column(i) for i, name in enumerate(names)]
     fields = list(batch.schema)
-    columns.append(pa.array([told.get(i) for i in range(len(rows))], pa.string()))
+    columns.append(pa.array([by_row.get(i) for i in range(len(rows))], pa.string()))
     schema = pa.schema([*fields, ("error", pa.string())], metadata=batch.schema.metadata)
     return (pa.Table if isinstance(batch, pa.Table) else pa.RecordBatch).from_arrays(columns, schema=schema)
