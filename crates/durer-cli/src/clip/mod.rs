@@ -18,7 +18,7 @@ use crate::input::display_name;
 use crate::layer::{self, Fields, Shift, Sink, Source, failure, named_format, words};
 use crate::messages::Messages;
 use crate::places::is_stream;
-use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
+use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules, oriented};
 use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule};
 use durer::parallel;
 use durer_formats::geo::crs::Crs;
@@ -374,7 +374,7 @@ impl Job<'_> {
         layer::writer(&self.args.output, self.to, &self.members(), self.system())
     }
 
-    /// Writes all features as they are.
+    /// Writes all features as they are, in GeoJSON with the directions of rings that it requires.
     fn convert(&mut self) -> Result<(), Failure> {
         let mut writer = None;
         loop {
@@ -383,6 +383,9 @@ impl Job<'_> {
                 return self.end(writer);
             }
             for mut feature in features {
+                if self.to.is_geojson() {
+                    feature.geometry = feature.geometry.map(oriented);
+                }
                 self.put(&mut writer, &mut feature)?;
             }
         }

@@ -36,6 +36,11 @@ fn files_are_converted_without_a_mask() {
         assert_eq!(back.lines().count(), 3, "{name}");
         assert!(back.contains("POLYGON ((8 47, 9 "), "{name}: {back}");
     }
+    // Shapefiles have outer rings clockwise, and GeoJSON counter-clockwise.
+    folder.must("clip o.shp -o turned.wkt");
+    assert!(text(&folder, "turned.wkt").contains("POLYGON ((8 47, 9 48, 9 47, 8 47))"));
+    folder.must("clip o.shp -o back.geojson");
+    assert!(text(&folder, "back.geojson").contains("[[[8,47],[9,47],[9,48],[8,47]]]"));
     assert_eq!(text(&folder, "o.cpg"), "UTF-8");
     assert!(text(&folder, "o.prj").starts_with("GEOGCS[\"GCS_WGS_1984\""));
     // An output of the same format without any operation means that the mask was forgotten.

@@ -121,6 +121,6 @@ mod tests {
                 vec![at(21.0, 20.0)]
             ]
         );
-        assert!(warnings.kept[0].message.starts_with("1 rings"));
+        assert!(warnings.kept[0].message.starts_with("1 ring is oriented"));
     }
 }

@@ -1,6 +1,7 @@
 //! A moment of an animation: its effect on nodes and morph weights.
 
 use super::buffer::Source;
+use super::choice;
 use super::json::{Animation, AnimationSampler, Channel, Root};
 use super::node::{Override, unit};
 use crate::{Error, Pose, Result};
@@ -8,8 +9,7 @@ use durer::math::{DQuat, DVec3};
 
 /// Returns the names of the animations; unnamed ones are `animation0`, `animation1` …
 pub fn names(root: &Root) -> Vec<String> {
-    let name = |(i, a): (usize, &Animation)| a.name.clone().unwrap_or(format!("animation{i}"));
-    root.animations.iter().enumerate().map(name).collect()
+    choice::names("animation", root.animations.iter().map(|animation| &animation.name))
 }
 
 /// Returns the values that the animation sets for each node at the requested time; nothing for the
@@ -37,16 +37,10 @@ pub fn pose(source: &Source<'_>, pose: Option<&Pose>) -> Result<Vec<Override>> {
 
 /// Returns the index of the requested animation; `None` if none is named and the file has none.
 fn find(root: &Root, pose: &Pose) -> Result<Option<usize>> {
-    let Some(wanted) = &pose.animation else {
+    if pose.animation.is_none() {
         return Ok((!root.animations.is_empty()).then_some(0));
-    };
-    let names = names(root);
-    let by_number = || wanted.parse().ok().filter(|n| *n < names.len());
-    let found = names.iter().position(|name| name == wanted).or_else(by_number);
-    found.map(Some).ok_or_else(|| {
-        let all = if names.is_empty() { "there is none".to_owned() } else { names.join(", ") };
-        Error::path("animations", format!("there is no animation `{wanted}`: {all}"))
-    })
+    }
+    choice::find("animation", &names(root), pose.animation.as_deref(), "animations")
 }
 
 /// Applies one channel.

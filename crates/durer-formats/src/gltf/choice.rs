@@ -22,7 +22,11 @@ pub fn find(
     let by_number = || wanted.parse().ok().filter(|n| *n < names.len());
     let found = names.iter().position(|name| name == wanted).or_else(by_number);
     found.map(Some).ok_or_else(|| {
-        let all = if names.is_empty() { "there is none".to_owned() } else { names.join(", ") };
-        Error::path(at, format!("there is no {word} `{wanted}`: {all}"))
+        let all = match names {
+            [] => "there is none".to_owned(),
+            [only] => format!("the only one is {only}"),
+            several => format!("there are {}", several.join(", ")),
+        };
+        Error::path(at, format!("there is no {word} `{wanted}`; {all}"))
     })
 }

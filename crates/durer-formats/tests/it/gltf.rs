@@ -167,7 +167,7 @@ fn scenes_are_chosen_by_name_or_number() {
         assert_eq!(shown(scene).unwrap(), name, "{scene:?}");
     }
     let messages = shown(Some("3")).unwrap_err().to_string();
-    assert_eq!(messages, "scenes: there is no scene `3`: scene0, 0, scene2");
+    assert_eq!(messages, "scenes: there is no scene `3`; there are scene0, 0, scene2");
 }
 
 #[test]

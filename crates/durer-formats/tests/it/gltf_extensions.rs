@@ -129,7 +129,10 @@ fn variants_choose_materials() {
     assert_eq!(materials(Some("variant2")), [2, 0]);
     assert_eq!(materials(Some("0")), [1, 0]);
     let error = varied(Some("warm")).unwrap_err().to_string();
-    assert!(error.ends_with("there is no variant `warm`: hot, cold, variant2"), "{error}");
+    assert!(
+        error.ends_with("there is no variant `warm`; there are hot, cold, variant2"),
+        "{error}"
+    );
 }
 
 /// Returns a PNG of some texels in a row as a data URI, in percent notation.

@@ -31,7 +31,7 @@ pub const INFO: Info = Info {
     authors: "M. Shimrat",
     year: 1962,
     source: "Algorithm 112: position of point relative to polygon, Communications of the ACM \
-             5(8); asked for the middle of each piece between two crossings",
+             5(8); applied to the middle of each piece between two crossings",
     class: Class::ObjectSpace,
     occluder: Occluder::None,
     coherence: &[],

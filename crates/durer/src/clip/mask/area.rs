@@ -192,8 +192,8 @@ fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -
 }
 
 /// Returns the same geometry with outer rings counter-clockwise and holes clockwise, each from its first
-/// vertex.
-pub(super) fn oriented(mut geometry: Geometry) -> Geometry {
+/// vertex, as RFC 7946 requires of GeoJSON.
+pub fn oriented(mut geometry: Geometry) -> Geometry {
     orient_all(&mut geometry);
     geometry
 }

@@ -30,7 +30,7 @@ mod segments;
 mod union;
 mod values;
 
-pub use area::Area;
+pub use area::{Area, oriented};
 pub use cutter::{Algorithm, Cut, Cutter};
 pub use fix::{Fixed, is_valid, match_points};
 pub use rules::{Made, Rules};

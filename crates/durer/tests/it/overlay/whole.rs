@@ -112,7 +112,7 @@ fn what_whole_numbers_cannot_have_is_refused() {
         overlay(&shapes, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace)
     };
     for (ring, value) in [(ends, (1 << 41) - 1), (all, u64::MAX)] {
-        let expected = Error::Limit { what: "cells across", value, limit: (1 << 41) - 2 };
+        let expected = Error::Limit { what: "number of cells across", value, limit: (1 << 41) - 2 };
         assert_eq!(try_on(ring, Options::default()), Err(expected));
     }
     let coarse = Options { grid: Some(2.0), ..Options::default() };
