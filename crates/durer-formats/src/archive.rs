@@ -292,7 +292,10 @@ mod tests {
         let archive = packed(&[("a", &[0; 1000])]);
         let small = Limits { decoded_bytes: 999, ..Limits::default() };
         let refused = message(only(archive.clone(), &small, |_| true, ("models", None, "")));
-        assert!(refused.contains("the size of the inflated parts is 1000, above the limit of 999"), "{refused}");
+        assert!(
+            refused.contains("the size of the inflated parts is 1000, above the limit of 999"),
+            "{refused}"
+        );
         let work = Work::with_budget(500, "max_memory");
         let poor = Limits { work, ..Limits::default() };
         let refused = message(only(archive.clone(), &poor, |_| true, ("models", None, "")));

@@ -142,7 +142,7 @@ impl Rules<'_> {
     /// edges. Weak creases are among them, whether or not they go on from others.
     pub fn lines(&self, vertices: std::ops::Range<u32>) -> Vec<EdgeLine> {
         let mut lines = Vec::new();
-        for (ends, sides) in self.edges.from_vertices(vertices) {
+        for (ends, sides) in self.edges.of_vertices(vertices) {
             if let (Some(class), sharpness) = self.class(ends, sides) {
                 let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
                 let items = [item(0), item(1)];

@@ -168,7 +168,7 @@ fn bends_from(
 ) -> Vec<(usize, Bent)> {
     let mut found: Vec<(usize, Bent)> = Vec::new();
     let (mut items, mut object) = (0..0, 0);
-    for (ends, sides) in edges.from_vertices(vertices) {
+    for (ends, sides) in edges.of_vertices(vertices) {
         let [a, b] = sides else { continue };
         let cosine = planes.cosine(*a, *b);
         if !(cosine < FLAT && cosine >= crease) {

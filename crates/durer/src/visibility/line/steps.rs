@@ -233,7 +233,7 @@ impl Seen<'_> {
     /// Returns the first pass over the edges whose smaller vertices lie in a range.
     fn turns(&self, vertices: Range<u32>) -> Turns {
         let mut found = Turns::default();
-        for (ends, sides) in self.edges.from_vertices(vertices) {
+        for (ends, sides) in self.edges.of_vertices(vertices) {
             let Some((items, cosine)) = self.turn(sides) else {
                 found.sharp.extend(ends);
                 continue;
@@ -268,7 +268,7 @@ impl Seen<'_> {
     /// Returns the same of those whose smaller vertices lie in a range.
     fn blunt_from(&self, vertices: Range<u32>, has_mate: &[bool]) -> Vec<Turn> {
         let mut found = Vec::new();
-        for (ends, sides) in self.edges.from_vertices(vertices) {
+        for (ends, sides) in self.edges.of_vertices(vertices) {
             if !sides.iter().all(|s| has_mate[s.item() as usize]) {
                 continue;
             }

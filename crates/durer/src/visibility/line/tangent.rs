@@ -28,7 +28,7 @@ impl Tangents {
         let jobs: Vec<_> =
             (0..count).step_by(JOB).map(|v| v..(v + JOB as u32).min(count)).collect();
         let of = |vertices| {
-            let edges = edges.from_vertices(vertices);
+            let edges = edges.of_vertices(vertices);
             let tangent =
                 edges.filter(|(ends, sides)| is_tangent(&directions, *ends, sides, crease));
             tangent.map(|(ends, _)| ends).collect::<Vec<_>>()

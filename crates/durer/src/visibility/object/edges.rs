@@ -148,7 +148,7 @@ impl Edges {
     /// Returns each edge once: its vertices, the smaller first, and the triangles at it in item
     /// order.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
-        self.from_vertices(0..self.starts.len().saturating_sub(1) as u32)
+        self.of_vertices(0..self.starts.len().saturating_sub(1) as u32)
     }
 
     /// Returns the triangle at the other side of an edge of two triangles with the same orientation.
@@ -179,7 +179,7 @@ impl Edges {
     }
 
     /// Returns the edges whose smaller vertex lies in a range.
-    pub(crate) fn from_vertices(
+    pub(crate) fn of_vertices(
         &self,
         vertices: std::ops::Range<u32>,
     ) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {

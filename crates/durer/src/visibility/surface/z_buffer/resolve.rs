@@ -145,14 +145,14 @@ struct Shown<S: Simd> {
 /// Returns the items and the background that the pixels of a block with these samples show.
 #[inline(always)]
 fn shown<S: Simd>(simd: S, samples: &[u32x16<S>]) -> Shown<S> {
-    let none = u32x16::splat(simd, NO_ITEM);
+    let (none, same) = (u32x16::splat(simd, NO_ITEM), u32x16::splat(simd, 0));
     let (zero, share) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0 / samples.len() as f32));
-    let (first, mut differs, mut background) = (samples[0], none ^ none, zero);
+    let (first, mut differs, mut background) = (samples[0], same, zero);
     for items in samples {
         differs |= first ^ *items;
         background += items.simd_eq(none).select(share, zero);
     }
-    let same = differs.simd_eq(none ^ none);
+    let same = differs.simd_eq(same);
     Shown { whole: same.select(first, none), mixed: (!same).to_bitmask(), background }
 }
 
