@@ -63,7 +63,7 @@ pub enum Command {
     #[command(after_long_help = crate::fill::EXAMPLES, after_help = "--help shows more, and examples.")]
     Fill(Box<crate::fill::FillArgs>),
     /// Describe a model, or the layers of a map
-    Info(InfoArgs),
+    Info(Box<InfoArgs>),
     /// List the objects, triangles, lines and points at a point or in a rectangle of the picture
     Pick(Box<PickArgs>),
     /// Compute the view of a nearby camera from a picture and its depths

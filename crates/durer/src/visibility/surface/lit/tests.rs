@@ -115,7 +115,7 @@ fn of_one<S: Simd>(simd: S, lit: &mut Lit<'_>, item: u32, patch: Patch) -> [[f32
 fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut queue, mut found) = (PointQueue::new(16 * 256), 0);
     let mut expected = vec![BlockSums::default(); 256];
-    for k in 0..256 {
+    for (k, expected) in expected.iter_mut().enumerate() {
         // At most two items per pixel, whose sum is the same in either order; more per patch.
         let run = numbers.below(2) * TRIANGLES;
         let mut kind = || run + 8 * numbers.below(3) + [1, 2, 5][numbers.below(3) as usize];
@@ -138,14 +138,14 @@ fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> 
                 }
             }
             for (channel, sum) in sum.into_iter().enumerate() {
-                expected[k].0[channel][pixel] = sum;
+                expected.0[channel][pixel] = sum;
             }
         }
         let samples = samples.map(|items| u32x16::from_slice(simd, &items));
         if queue.light_samples(simd, lit, &samples, (k, patch)) {
             found += 1;
         } else {
-            expected[k] = BlockSums::default();
+            *expected = BlockSums::default();
         }
     }
     PointQueue::flush(simd, &mut queue, lit);
