@@ -202,7 +202,7 @@ fn variants_are_listed_and_chosen() {
     folder.must("render model/m.gltf -o a.png --size 8x8 --variant cold");
     folder
         .run("pick model/m.gltf --at 1,1 --variant warm")
-        .fails(1, "no variant `warm`: hot, cold");
+        .fails(1, "no variant `warm`; there are hot, cold");
     folder.write("cube.obj", CUBE);
     let ended = folder.must("render cube.obj -o a.png --size 8x8 --variant cold");
     assert!(ended.err.contains("OBJ has no variants; --variant does nothing"), "{}", ended.err);

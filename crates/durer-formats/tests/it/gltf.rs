@@ -621,7 +621,7 @@ fn morph_targets_follow_their_weights() {
     let model = posed(None, nodes).unwrap();
     assert_eq!(model.animations, ["still", "go"]);
     let missing = posed(at("run", 0.0), nodes).unwrap_err().to_string();
-    assert!(missing.contains("no animation `run`: still, go"), "{missing}");
+    assert!(missing.contains("no animation `run`; there are still, go"), "{missing}");
     assert!(posed(at("go", f64::NAN), nodes).is_err());
 }
 
