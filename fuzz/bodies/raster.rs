@@ -11,7 +11,7 @@ use durer::raster::paint::{Canvas, MaskKind, Options, Paint};
 use durer::raster::polygon::{self, PolygonRasterizer};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, boundary_fill, flood_fill};
 use durer::target::Pixels;
-use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::gradient::{Gradient, GradientShape, Spread};
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
@@ -272,7 +272,7 @@ fn any_painting(
             Paint::Color(u.arbitrary()?)
         } else {
             let (start, end) = (point(u, kind)?, point(u, kind)?);
-            let shape = Shape::Linear { start, end };
+            let shape = GradientShape::Linear { start, end };
             let stops =
                 vec![(number(u, kind)?, u.arbitrary()?), (number(u, kind)?, u.arbitrary()?)];
             let spread = *u.choose(&[Spread::Pad, Spread::Repeat, Spread::Reflect])?;

@@ -3,11 +3,13 @@
 //! and `maps`, which the tests call as well.
 
 use super::surfaces::{Bytes, camera, scene};
-use durer::annotate::{self, Along, Annotations, Place, Request, Shown, Side, Thread, What};
+use durer::annotate::{
+    self, Along, Annotations, FeaturePlace, Request, Shown, Thread, ViewSide, What,
+};
 use durer::clip::polygon::{Shapes, WindingRule};
 use durer::clip::simplify::LineSimplifier;
 use durer::clip::simplify::coverage::{self, Coverage};
-use durer::clip::tiles::{Body, Feature, Options as TileOptions, Pyramid};
+use durer::clip::tiles::{Options as TileOptions, Pyramid, TileBody, TileFeature};
 use durer::curve::b_spline::Nurbs;
 use durer::curve::fit::{Options as FitOptions, Polyline, fit};
 use durer::curve::pieces;
@@ -35,10 +37,10 @@ fn point(bytes: &mut Bytes<'_>) -> DVec2 {
     DVec2::new(number(bytes), number(bytes))
 }
 
-fn place(bytes: &mut Bytes<'_>) -> Place {
+fn place(bytes: &mut Bytes<'_>) -> FeaturePlace {
     match bytes.next() % 3 {
-        0 => Place::Feature(format!("hole {}", bytes.next() % 3)),
-        _ => Place::Point(DVec3::new(number(bytes), number(bytes), number(bytes))),
+        0 => FeaturePlace::Feature(format!("hole {}", bytes.next() % 3)),
+        _ => FeaturePlace::Point(DVec3::new(number(bytes), number(bytes), number(bytes))),
     }
 }
 
@@ -52,7 +54,13 @@ fn request(bytes: &mut Bytes<'_>) -> Request {
             What::Linear { from: place(bytes), to: place(bytes), along }
         }
     };
-    let sides = [None, Some(Side::Above), Some(Side::Below), Some(Side::Left), Some(Side::Right)];
+    let sides = [
+        None,
+        Some(ViewSide::Above),
+        Some(ViewSide::Below),
+        Some(ViewSide::Left),
+        Some(ViewSide::Right),
+    ];
     let texts =
         [None, Some("<>".to_owned()), Some("a\n\u{202e}<>\0".to_owned()), Some(String::new())];
     let (side, text) = (bytes.next() % 5, bytes.next() % 4);
@@ -182,7 +190,7 @@ pub fn marks(data: &[u8]) {
             );
         }
     }
-    drop(explode::explode(&scene, explode::Way::Radial, None));
+    drop(explode::explode(&scene, explode::ExplodeDirection::Radial, None));
 }
 
 /// Up to 200 points: free, on a grid, or along a circle.
@@ -247,8 +255,8 @@ pub fn maps(data: &[u8]) {
     let scaled = |all: &[DVec2]| all.iter().map(|p| *p * 0.2 + 0.5).collect::<Vec<_>>();
     let mut areas = Shapes::new();
     areas.push_ring(scaled(&ring));
-    let bodies = [Body::Points(scaled(&line)), Body::Areas(areas)];
-    let features = bodies.map(|body| Feature { layer: 0, body, fill: WindingRule::EvenOdd });
+    let bodies = [TileBody::Points(scaled(&line)), TileBody::Areas(areas)];
+    let features = bodies.map(|body| TileFeature { layer: 0, body, fill: WindingRule::EvenOdd });
     let buffer = u32::from(bytes.next() % 64);
     let options = TileOptions { zooms: 0..=LAST, extent: 64, buffer, ..TileOptions::default() };
     let Ok(pyramid) = Pyramid::new(features.into(), options) else { return };

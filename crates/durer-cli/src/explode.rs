@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::values;
 use clap::Args;
 use durer::scene::Scene;
-use durer::view::explode::{self, Way};
+use durer::view::explode::{self, ExplodeDirection};
 
 /// Options that move the parts of assemblies apart.
 #[derive(Debug, Clone, Args)]
@@ -22,7 +22,7 @@ pub struct ExplodeArgs {
 /// `--explode`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explode {
-    way: Way,
+    way: ExplodeDirection,
     gap: Option<f64>,
 }
 

@@ -13,7 +13,7 @@ use clap::{Args, ValueHint};
 use durer::math::{DVec2, Rect};
 use durer::scene::{Scene, Topology};
 use durer::view::View;
-use durer::view::pick::{Area, Hit, objects, pick};
+use durer::view::pick::{Hit, PickArea, objects, pick};
 use durer_formats::wording::counted;
 use serde::Serialize;
 use std::fmt::Write;
@@ -125,8 +125,8 @@ pub fn run(args: &PickArgs) -> Result<(), Failure> {
         .map_err(|failure| input::blamed(&name, &model.scene, failure))?;
     let view = View::new(camera, size.width, size.height).map_err(usage)?;
     let area = match (args.at, args.rect) {
-        (_, Some(rect)) => Area::Rect(rect),
-        (Some(point), None) => Area::Point(point),
+        (_, Some(rect)) => PickArea::Rect(rect),
+        (Some(point), None) => PickArea::Point(point),
         (None, None) => return Err(Failure::Usage("--at or --rect is needed".to_owned())),
     };
     let hits = pick(&model.scene, &view, area);

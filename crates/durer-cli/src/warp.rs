@@ -15,7 +15,7 @@ use durer::scene::{Camera, Projection};
 use durer::shade::color::encode_rgba8;
 use durer::target::Pixels;
 use durer::trace::NoTrace;
-use durer::view::warp::{self, Source, Warped};
+use durer::view::warp::{self, DepthPicture, Warped};
 use durer_formats::wording::counted;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
@@ -144,12 +144,12 @@ pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     let (width, height) = (first.color.width(), first.color.height());
     let before = DVec2::new(f64::from(width), f64::from(height));
     let size = args.size.map_or(Size { width, height }, |sides| sides.of_shape(before));
-    let mut sources = vec![Source { color: &first.color, depth: &first.depth, camera }];
+    let mut sources = vec![DepthPicture { color: &first.color, depth: &first.depth, camera }];
     if let Some(second) = &second {
         let eye = args.fill_eye.unwrap_or(args.eye);
         let camera = Camera { eye, target: args.fill_target.unwrap_or(args.target), ..camera };
         check("--fill-eye, --fill-target", &camera)?;
-        sources.push(Source { color: &second.color, depth: &second.depth, camera });
+        sources.push(DepthPicture { color: &second.color, depth: &second.depth, camera });
     }
     let work = args.running.work.clone();
     let options = warp::Options { hole: encode_rgba8(args.holes), work };

@@ -9,7 +9,7 @@ use durer::scene::{Camera, Projection, Topology};
 use durer::target::drawing::{Drawing, LineClass};
 use durer::target::{Framebuffer, Pixels};
 use durer::view::View;
-use durer::view::pick::{Area, pick};
+use durer::view::pick::{PickArea, pick};
 use durer_cli::embedded::{self, Rendered};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -144,7 +144,7 @@ fn picked(
 ) -> PyResult<Vec<Picked>> {
     let view = View::new(camera(seen_by), size[0], size[1]);
     let view = view.map_err(|e| error::of_library(py, &e))?;
-    let hits = py.detach(|| pick(&model.scene, &view, Area::Point(DVec2::from(at))));
+    let hits = py.detach(|| pick(&model.scene, &view, PickArea::Point(DVec2::from(at))));
     let kind = |topology: Topology| match topology {
         Topology::Points => "point",
         Topology::Lines => "line",

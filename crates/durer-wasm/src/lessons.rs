@@ -1,11 +1,11 @@
 //! The list of lessons.
 
 use crate::answer::Failure;
-use durer::explain::{self, Family, Fault, Lesson, Word};
+use durer::explain::{self, Lesson, LessonFamily, LessonFault, Word};
 use serde_json::{Value, json};
 
 /// Families of this engine.
-const FAMILIES: &[&[Family]] = &[
+const FAMILIES: &[&[LessonFamily]] = &[
     #[cfg(feature = "plane")]
     explain::PLANE,
     #[cfg(feature = "space")]
@@ -14,7 +14,7 @@ const FAMILIES: &[&[Family]] = &[
     explain::VISIBILITY,
 ];
 
-fn families() -> impl Iterator<Item = &'static Family> + Clone {
+fn families() -> impl Iterator<Item = &'static LessonFamily> + Clone {
     FAMILIES.iter().copied().flatten()
 }
 
@@ -28,7 +28,7 @@ pub(crate) fn list() -> Value {
     json!({ "version": env!("CARGO_PKG_VERSION"), "families": families().map(family).collect::<Vec<_>>() })
 }
 
-fn family(family: &Family) -> Value {
+fn family(family: &LessonFamily) -> Value {
     let lessons: Vec<Value> = family.lessons.iter().map(facts).collect();
     json!({ "title": word(family.title), "lessons": lessons })
 }
@@ -40,7 +40,7 @@ pub(crate) fn word(word: Word) -> Value {
 
 fn facts(lesson: &Lesson) -> Value {
     let info = lesson.info;
-    let fault = |fault: &Fault| json!({ "line": fault.line, "wrong": fault.wrong });
+    let fault = |fault: &LessonFault| json!({ "line": fault.line, "wrong": fault.wrong });
     let example = |example: &durer::explain::Example| json!({ "name": example.name, "title": word(example.title) });
     let template = |template: &&durer::explain::Template| json!({ "kind": template.kind, "name": word(template.name()), "text": word(template.text) });
     json!({
@@ -63,6 +63,6 @@ fn facts(lesson: &Lesson) -> Value {
 }
 
 /// Returns the faults that a lesson's program can have; only lessons in the plane have programs.
-fn faults(name: &str) -> &'static [Fault] {
+fn faults(name: &str) -> &'static [LessonFault] {
     if cfg!(feature = "plane") { explain::faults(name) } else { &[] }
 }

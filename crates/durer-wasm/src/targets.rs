@@ -1,6 +1,6 @@
 //! Places in a picture that a step is about: what a student clicks who is asked for the next one.
 
-use durer::explain::{Look, Picture, Shape};
+use durer::explain::{Look, MarkShape, Picture};
 use durer::math::DVec2;
 use serde_json::{Value, json};
 
@@ -10,16 +10,16 @@ pub(crate) fn targets(picture: &Picture) -> Value {
     now.filter_map(|mark| target(&mark.shape)).collect()
 }
 
-fn target(shape: &Shape) -> Option<Value> {
+fn target(shape: &MarkShape) -> Option<Value> {
     let points = |all: &[DVec2]| all.iter().map(DVec2::to_array).collect::<Vec<_>>();
     match shape {
-        Shape::Cell { at, .. } => Some(json!({ "pixel": at })),
-        Shape::Dot(p) => Some(json!({ "point": p.to_array() })),
-        Shape::Chain(all) if all.len() > 1 => Some(json!({ "line": points(all) })),
-        Shape::Arrow(ends) => Some(json!({ "line": points(ends) })),
-        Shape::Rings(rings) => {
+        MarkShape::Cell { at, .. } => Some(json!({ "pixel": at })),
+        MarkShape::Dot(p) => Some(json!({ "point": p.to_array() })),
+        MarkShape::Chain(all) if all.len() > 1 => Some(json!({ "line": points(all) })),
+        MarkShape::Arrow(ends) => Some(json!({ "line": points(ends) })),
+        MarkShape::Rings(rings) => {
             Some(json!({ "area": rings.iter().map(|ring| points(ring)).collect::<Vec<_>>() }))
         }
-        Shape::Chain(_) | Shape::Label { .. } => None,
+        MarkShape::Chain(_) | MarkShape::Label { .. } => None,
     }
 }

@@ -1,6 +1,6 @@
 //! Pictures of steps for LaTeX: TikZ in centimetres.
 
-use durer::explain::{Frame, Language, Look, Mark, Picture, Shape};
+use durer::explain::{Frame, Language, Look, Mark, MarkShape, Picture};
 use durer::math::DVec2;
 
 /// Longer side of the drawing in centimetres.
@@ -115,21 +115,21 @@ impl Pen<'_> {
 
     fn mark(&mut self, Mark { shape, look }: &Mark) {
         let text = match shape {
-            Shape::Chain(points) if points.len() < 2 => return,
-            Shape::Chain(points) => format!("\\draw[{}] {};", stroke(*look), self.path(points)),
-            Shape::Rings(rings) => self.area(rings, *look),
-            Shape::Dot(p) => {
+            MarkShape::Chain(points) if points.len() < 2 => return,
+            MarkShape::Chain(points) => format!("\\draw[{}] {};", stroke(*look), self.path(points)),
+            MarkShape::Rings(rings) => self.area(rings, *look),
+            MarkShape::Dot(p) => {
                 format!("\\fill[durer-{}] {} circle (1.5pt);", look.name(), self.at(*p))
             }
-            Shape::Arrow(ends) => {
+            MarkShape::Arrow(ends) => {
                 format!("\\draw[{},-{{Stealth}}] {};", stroke(*look), self.path(ends))
             }
-            Shape::Label { at, by, text } => {
+            MarkShape::Label { at, by, text } => {
                 let text = escaped(&text.text(self.language));
                 let (x, y) = (by.x, -by.y);
                 format!("\\node[shift={{({x}pt,{y}pt)}}] at {} {{{text}}};", self.at(*at))
             }
-            Shape::Cell { at, color, text } => {
+            MarkShape::Cell { at, color, text } => {
                 self.cell(*at, *color, *look, &text.text(self.language))
             }
         };
@@ -165,11 +165,11 @@ impl Pen<'_> {
 }
 
 /// Returns the layer that a shape is drawn in, counted from the lowest.
-const fn layer_of(shape: &Shape) -> usize {
+const fn layer_of(shape: &MarkShape) -> usize {
     match shape {
-        Shape::Cell { .. } => 0,
-        Shape::Label { .. } => 2,
-        Shape::Chain(_) | Shape::Rings(_) | Shape::Dot(_) | Shape::Arrow(_) => 1,
+        MarkShape::Cell { .. } => 0,
+        MarkShape::Label { .. } => 2,
+        MarkShape::Chain(_) | MarkShape::Rings(_) | MarkShape::Dot(_) | MarkShape::Arrow(_) => 1,
     }
 }
 

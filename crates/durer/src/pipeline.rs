@@ -36,13 +36,13 @@ use crate::target::Framebuffer;
 use crate::trace::{NoTrace, Tracer};
 use crate::view::View;
 use crate::view::window::PixelRect;
-use crate::visibility::surface::a_buffer::Mask;
+use crate::visibility::surface::a_buffer::SubpixelMask;
 use crate::visibility::surface::ambient_occlusion;
 use crate::visibility::surface::comparisons::comparisons;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::method::{self, render_with};
-use crate::visibility::surface::setup::Filter;
-pub use crate::visibility::surface::z_buffer::survey::{MOST_ITEMS, Seen, Survey};
+use crate::visibility::surface::setup::TriangleFilter;
+pub use crate::visibility::surface::z_buffer::survey::{MOST_ITEMS, Survey, SurveyResult};
 pub use crate::visibility::surface::{Background, Cull, Marks, Samples, SurfaceMethod};
 use crate::visibility::surface::{shadow_map, z_buffer};
 use crate::work::{Charge, Work};
@@ -106,7 +106,7 @@ pub struct RenderOptions {
     /// sample, at the pixel's centre.
     pub samples: Samples,
     /// Resolution of the A-buffer's masks, which replace its samples.
-    pub mask: Mask,
+    pub mask: SubpixelMask,
     /// Method that computes shadows.
     pub shadows: Shadows,
     /// Texels along the side of shadow maps.
@@ -148,7 +148,7 @@ impl RenderOptions {
             cull: Cull::None,
             marks: Marks::default(),
             samples: Samples::Four,
-            mask: Mask::M16,
+            mask: SubpixelMask::M16,
             shadows: Shadows::None,
             shadow_map_side: shadow_map::Options::default().side,
             bounces: 0,
@@ -240,9 +240,9 @@ impl RenderOptions {
     }
 
     /// Returns the filter for triangles on the screen.
-    fn filter(&self) -> Filter {
+    fn filter(&self) -> TriangleFilter {
         let sample_reach = self.algorithm.sample_reach();
-        Filter { cull: self.cull, sample_reach, marks: self.marks }
+        TriangleFilter { cull: self.cull, sample_reach, marks: self.marks }
     }
 }
 
@@ -501,7 +501,7 @@ fn from_screen_triangles(
     options: &RenderOptions,
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<method::Step>,
-) -> Result<z_buffer::Report> {
+) -> Result<z_buffer::StageReport> {
     let start = Stopwatch::start();
     let input = SurfaceInput::within(&options.work, scene, view, options.filter())?;
     let geometry_seconds = start.seconds();
@@ -517,7 +517,7 @@ fn from_screen_triangles(
     };
     render_with(options.algorithm, &input, lights, &method_options, framebuffer, t)?;
     let raster_seconds = start.seconds();
-    Ok(z_buffer::Report { counts: input.counts, geometry_seconds, raster_seconds })
+    Ok(z_buffer::StageReport { counts: input.counts, geometry_seconds, raster_seconds })
 }
 
 /// Approximate number of bytes for each corner of a mesh while its vertices get normals.

@@ -4,7 +4,7 @@ use crate::medians;
 use crate::scenes::Random;
 use durer::curve::Path;
 use durer::math::{DVec2, IVec2};
-use durer::raster::line::tiled::{self, Line};
+use durer::raster::line::tiled::{self, PixelLine};
 use durer::raster::line::wide::Stroke;
 use durer::raster::line::{Options, bresenham};
 use durer::raster::paint::{Canvas, Paint};
@@ -24,7 +24,7 @@ pub fn aliased() {
         .collect();
     let tiled: Vec<Line<[u8; 4]>> = lines
         .iter()
-        .map(|(p, q, value)| Line { from: (*p).into(), to: (*q).into(), value: *value })
+        .map(|(p, q, value)| PixelLine { from: (*p).into(), to: (*q).into(), value: *value })
         .collect();
     let mut maps = [(); 4].map(|()| Pixels::new(side as u32, side as u32, [255_u8; 4]));
     let [a, b, c, d] = &mut maps;

@@ -6,7 +6,7 @@ use crate::{Result, llvmpipe, scene, table};
 use durer::math::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use durer::pipeline::{Lighting, RenderOptions, Samples, render_into};
 use durer::scene::{
-    AlphaMode, Camera, Filter, Image, Instance, Material, Mesh, MipFilter, Part, Projection,
+    AlphaMode, Camera, TextureFilter, Image, Instance, Material, Mesh, MipFilter, Part, Projection,
     Sampler, Scene, ShadingModel, Texture, TextureRef, Wrap,
 };
 use durer::target::Framebuffer;
@@ -108,8 +108,8 @@ pub fn quads(mode: &str, layers: usize) -> Scene {
         ..Material::default()
     };
     let sampler = Sampler {
-        mag: Filter::Linear,
-        min: Filter::Linear,
+        mag: TextureFilter::Linear,
+        min: TextureFilter::Linear,
         mip: MipFilter::None,
         wrap_u: Wrap::Repeat,
         wrap_v: Wrap::Repeat,

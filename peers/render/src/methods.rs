@@ -11,7 +11,7 @@ use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::surface::ray::PrimaryRays;
-use durer::visibility::surface::{self, Cull, Filter, SurfaceInput, SurfaceMethod, render_with};
+use durer::visibility::surface::{self, Cull, TriangleFilter, SurfaceInput, SurfaceMethod, render_with};
 use std::path::Path;
 
 const SIDE: u32 = 1024;
@@ -81,7 +81,7 @@ fn contest(name: &str, scene: &Scene, rounds: usize) -> Result<()> {
             result?;
             costs.push(cost);
         }
-        let filter = Filter::new(Cull::None, 0);
+        let filter = TriangleFilter::new(Cull::None, 0);
         let input = SurfaceInput::new(scene, &view, filter)?;
         let (built, cost) = measure(|| PrimaryRays::new(&input));
         rays[0].push(cost);
@@ -119,7 +119,7 @@ fn picture(
     view: &View,
     lights: &PreparedLights,
 ) -> Result<Framebuffer> {
-    let filter = Filter::new(Cull::None, method.sample_reach());
+    let filter = TriangleFilter::new(Cull::None, method.sample_reach());
     // The production path makes no list of triangles.
     let nothing = Scene::default();
     let listed = if method == SurfaceMethod::ZBuffer { &nothing } else { scene };

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::input::display_name;
 use crate::layer::{open, words};
 use crate::messages::Messages;
-use durer::clip::cells::{self, Piece};
+use durer::clip::cells::{self, CellPiece};
 use durer::clip::mask::Rules;
 use durer::clip::polygon::{Shapes, WindingRule};
 use durer::parallel;
@@ -110,7 +110,7 @@ impl Job<'_> {
             for (i, (feature, pieces)) in features.iter().zip(cuts).enumerate() {
                 let pieces = pieces.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 self.report.add(pieces.iter().map(|piece| &piece.cut));
-                for Piece { cell, cut } in pieces {
+                for CellPiece { cell, cut } in pieces {
                     if cut.geometry.is_some() {
                         let mut piece = Feature { geometry: cut.geometry, ..feature.clone() };
                         piece.fill_rule = WindingRule::EvenOdd;

@@ -1,6 +1,6 @@
 //! The report of `durer draw --json`.
 
-use durer::map::Counts;
+use durer::map::LayerCounts;
 use serde::Serialize;
 
 /// The whole report.
@@ -56,8 +56,8 @@ pub struct MapCounts {
 
 impl MapCounts {
     /// Creates the counts of a layer whose labels have yet to be placed.
-    pub fn new(features: usize, counts: Counts) -> Self {
-        let Counts { points, lines, polygons, .. } = counts;
+    pub fn new(features: usize, counts: LayerCounts) -> Self {
+        let LayerCounts { points, lines, polygons, .. } = counts;
         Self { features: features as u64, points, lines, polygons, ..Self::default() }
     }
 

@@ -8,7 +8,7 @@ use crate::options::Ortho;
 use crate::options::drawing::Unit;
 use crate::render_args::RenderArgs;
 use crate::values::Size;
-use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock};
+use durer::paper::{self, Contents, LaidOut, Page, PaperFrame, Scale, SheetView, TitleBlock};
 use durer::target::drawing::Drawing;
 use durer_formats::drawing::DrawingFormat;
 
@@ -169,7 +169,7 @@ fn paper_options(
         margin: drawing.margin.unwrap_or(margin),
         scale: drawing.scale.unwrap_or(scale),
         unit: unit(args, subject).millimetres(),
-        frame: if window { Frame::Window } else { Frame::Content },
+        frame: if window { PaperFrame::Window } else { PaperFrame::Content },
         hidden: drawing.hidden.into(),
         pens: drawing.pen.unwrap_or_default(),
         fit: curve_fit(args, kind),

@@ -8,7 +8,7 @@ use crate::staging;
 use crate::values::Algorithm;
 use durer::pipeline::{Lighting, Marks, RenderOptions, SurfaceMethod};
 use durer::scene::{Camera, Scene};
-use durer::visibility::surface::a_buffer::Mask;
+use durer::visibility::surface::a_buffer::SubpixelMask;
 
 /// Returns the options for a picture, given the model, the part that the view is fitted to, and the whole scene.
 pub fn render_options(
@@ -56,8 +56,8 @@ pub fn picture_options(
         marks: Marks { line_width: args.look.line_width, point_size: args.look.point_size },
         samples: args.picture.aa.into(),
         mask: match args.picture.aa {
-            Samples::SixtyFour => Mask::M64,
-            _ => Mask::M16,
+            Samples::SixtyFour => SubpixelMask::M64,
+            _ => SubpixelMask::M16,
         },
         shadows: args.look.shadows.into(),
         shadow_map_side: args.look.shadow_map,

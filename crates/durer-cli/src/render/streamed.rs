@@ -19,7 +19,7 @@ use crate::report::{Growing, PictureReport};
 use crate::staging;
 use crate::values::Algorithm;
 use durer::math::DVec3;
-use durer::pipeline::{self, RenderOptions, Seen, SurfaceMethod};
+use durer::pipeline::{self, RenderOptions, SurfaceMethod, SurveyResult};
 use durer::scene::{Camera, NamedCamera, Projection, Scene, UpAxis};
 use durer::target::Framebuffer;
 use durer::view::fit;
@@ -161,7 +161,7 @@ impl Streamed<'_> {
         &mut self,
         options: &RenderOptions,
         report: &mut PictureReport,
-    ) -> Result<Seen, Failure> {
+    ) -> Result<SurveyResult, Failure> {
         let facts = self.facts()?;
         let (all, mut done) = (facts.triangles + facts.points, 0);
         let (messages, name) = (self.messages, self.name);
@@ -183,7 +183,7 @@ impl Streamed<'_> {
     /// Renders the visible items.
     fn render_seen(
         &mut self,
-        seen: &Seen,
+        seen: &SurveyResult,
         options: &RenderOptions,
         report: &mut PictureReport,
     ) -> Result<(Framebuffer, pipeline::Status), Failure> {

@@ -1,6 +1,6 @@
 //! The report of a drawing in `--json`.
 
-use durer::annotate::Feature;
+use durer::annotate::RoundFeature;
 use durer::math::DVec3;
 use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
@@ -77,8 +77,8 @@ pub struct FeatureReport {
     pub angle: f64,
 }
 
-impl From<&Feature> for FeatureReport {
-    fn from(feature: &Feature) -> Self {
+impl From<&RoundFeature> for FeatureReport {
+    fn from(feature: &RoundFeature) -> Self {
         let c = &feature.cylinder;
         Self {
             name: feature.name.clone(),

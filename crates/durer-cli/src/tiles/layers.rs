@@ -8,7 +8,7 @@ use crate::messages::Messages;
 use crate::names;
 use crate::options::TileCoordinates;
 use crate::places::is_stream;
-use durer::clip::tiles::{self, Placed};
+use durer::clip::tiles::{self, PlacedGeometry};
 use durer::parallel;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Feature, GeoFormat, System};
@@ -41,7 +41,7 @@ pub struct Layers {
     pub layers: Vec<Layer>,
     pub rows: Vec<Row>,
     /// Geometries of one kind, in the order of the rows.
-    pub features: Vec<tiles::Feature>,
+    pub features: Vec<tiles::TileFeature>,
     /// The row of each of them.
     pub row_of: Vec<usize>,
     /// Features read.
@@ -196,7 +196,7 @@ fn read_file(
         let coordinates = placing.coordinates;
         let place = |(_, f): &(u64, Feature)| match &f.geometry {
             Some(geometry) => tiles::place(geometry, coordinates, args.short_way),
-            None => Placed::default(),
+            None => PlacedGeometry::default(),
         };
         let placed = parallel::of_each(&features, place);
         for ((number, feature), placed) in features.iter().zip(placed) {
@@ -387,7 +387,7 @@ impl Layers {
         args: &TilesArgs,
         layer: usize,
         feature: &Feature,
-        placed: Placed,
+        placed: PlacedGeometry,
         number: u64,
         doubts: &mut Doubts,
     ) {
@@ -404,7 +404,7 @@ impl Layers {
         let properties = self.layers[layer].properties(args, feature.properties.as_deref());
         self.rows.push(Row { layer, id, properties });
         for body in placed.bodies {
-            self.features.push(tiles::Feature { layer, body, fill: feature.fill_rule });
+            self.features.push(tiles::TileFeature { layer, body, fill: feature.fill_rule });
             self.row_of.push(self.rows.len() - 1);
         }
     }

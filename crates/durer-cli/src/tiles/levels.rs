@@ -1,7 +1,7 @@
 //! The zoom levels of tiles: those of `--zoom`, or those that the data need.
 
 use super::args::TilesArgs;
-use durer::clip::tiles::{Detail, Feature, Options, Pyramid, Reason};
+use durer::clip::tiles::{DetailLevel, Options, Pyramid, Reason, TileFeature};
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
@@ -60,11 +60,11 @@ impl Chosen {
 }
 
 /// Returns the features prepared for their levels, and the source of these.
-pub fn pyramid(args: &TilesArgs, features: Vec<Feature>) -> durer::Result<(Pyramid, Chosen)> {
+pub fn pyramid(args: &TilesArgs, features: Vec<TileFeature>) -> durer::Result<(Pyramid, Chosen)> {
     let (zooms, chosen) = match &args.zoom {
         Some(zooms) => (zooms.clone(), Chosen::Option),
         None if features.is_empty() => (0..=0, Chosen::Nothing),
-        None => of_detail(Detail::of(&features, args.extent)),
+        None => of_detail(DetailLevel::of(&features, args.extent)),
     };
     let options = Options {
         zooms: zooms.clone(),
@@ -83,8 +83,8 @@ pub fn pyramid(args: &TilesArgs, features: Vec<Feature>) -> durer::Result<(Pyram
     Ok((pyramid, chosen))
 }
 
-fn of_detail(detail: Option<Detail>) -> (RangeInclusive<u8>, Chosen) {
-    let Some(Detail { zoom, reason }) = detail else { return (0..=PLACE, Chosen::Place) };
+fn of_detail(detail: Option<DetailLevel>) -> (RangeInclusive<u8>, Chosen) {
+    let Some(DetailLevel { zoom, reason }) = detail else { return (0..=PLACE, Chosen::Place) };
     let chosen = match reason {
         Reason::Vertices => Chosen::Vertices,
         Reason::Distances => Chosen::Distances,

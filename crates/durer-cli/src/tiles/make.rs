@@ -2,7 +2,7 @@
 
 use super::args::{TileFormat, TilesArgs};
 use super::layers::{Layers, Row};
-use durer::clip::tiles::{Piece, Shape, Tile};
+use durer::clip::tiles::{GridShape, Tile, TilePiece};
 use durer_formats::geo::{Feature, GeoFormat, Member, Writer};
 use durer_formats::tiles::{Layer, Value, encode, gzip};
 use std::collections::{BTreeMap, HashSet};
@@ -43,7 +43,7 @@ impl<'a> Maker<'a> {
     }
 
     /// Returns the bytes of a tile.
-    pub fn make(&self, tile: Tile, mut pieces: Vec<Piece>) -> Made {
+    pub fn make(&self, tile: Tile, mut pieces: Vec<TilePiece>) -> Made {
         for piece in &pieces {
             self.seen[self.all.row_of[piece.feature]].store(true, Ordering::Relaxed);
         }
@@ -59,10 +59,9 @@ impl<'a> Maker<'a> {
     }
 
     /// Returns the compressed bytes, of tiles that come often from memory.
-    fn packed(&self, pieces: &[Piece]) -> Vec<u8> {
+    fn packed(&self, pieces: &[TilePiece]) -> Vec<u8> {
         let bytes = self.vector(pieces);
-        let covers =
-            |piece: &Piece| matches!(&piece.shape, Shape::Areas(s) if s.points().len() == 4);
+        let covers = |piece: &TilePiece| matches!(&piece.shape, GridShape::Areas(s) if s.points().len() == 4);
         if !pieces.iter().all(covers) {
             return gzip(&bytes);
         }
@@ -79,22 +78,22 @@ impl<'a> Maker<'a> {
         packed
     }
 
-    fn row(&self, piece: &Piece) -> &Row {
+    fn row(&self, piece: &TilePiece) -> &Row {
         &self.all.rows[self.all.row_of[piece.feature]]
     }
 
     /// Keeps the first of several points with the same properties at the same place.
-    fn merge_points(&self, pieces: &mut Vec<Piece>) {
+    fn merge_points(&self, pieces: &mut Vec<TilePiece>) {
         let mut seen = HashSet::new();
         pieces.retain_mut(|piece| {
             let row = self.row(piece);
-            let Shape::Points(points) = &mut piece.shape else { return true };
+            let GridShape::Points(points) = &mut piece.shape else { return true };
             points.retain(|p| seen.insert((row.layer, &row.properties, p.x, p.y)));
             !points.is_empty()
         });
     }
 
-    fn vector(&self, pieces: &[Piece]) -> Vec<u8> {
+    fn vector(&self, pieces: &[TilePiece]) -> Vec<u8> {
         let layer = |l: &'a super::layers::Layer| Layer::new(&l.name, self.extent, &l.dictionary);
         let mut layers: Vec<Layer<'_>> = self.all.layers.iter().map(layer).collect();
         for piece in pieces {
@@ -104,7 +103,7 @@ impl<'a> Maker<'a> {
         encode(&layers)
     }
 
-    fn geojson(&self, tile: Tile, pieces: &[Piece]) -> Vec<u8> {
+    fn geojson(&self, tile: Tile, pieces: &[TilePiece]) -> Vec<u8> {
         let mut writer = Writer::new(GeoFormat::GeoJson, Vec::new());
         for piece in pieces {
             let row = self.row(piece);

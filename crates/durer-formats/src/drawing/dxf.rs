@@ -17,7 +17,7 @@ use super::dxf_tags::{
 };
 use crate::Result;
 use durer::math::DVec2;
-use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use durer::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
 use durer::work::Work;
 use std::io::Write;
 
@@ -50,7 +50,7 @@ pub(super) fn write_within(
         body.color = Some(layer_color(pen));
         for mark in &layer.marks {
             match mark {
-                Mark::Dimension(dimension) => {
+                PaperMark::Dimension(dimension) => {
                     let number = numbers.next().unwrap_or_default();
                     dimensions.write(&mut body, sheet, &name, dimension, number);
                 }
@@ -180,11 +180,14 @@ fn layers(tags: &mut Tags, sheet: &Sheet) {
 /// Returns the pen of a layer: the pen of its first line.
 fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
     l.marks.iter().find_map(|m| match m {
-        Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
-            sheet.pens.get(*pen)
-        }
-        Mark::Dimension(dimension) => sheet.pens.get(dimension.text.pen),
-        Mark::Fill { .. } | Mark::Area { .. } | Mark::Gradient(_) | Mark::Group(_) => None,
+        PaperMark::Stroke { pen, .. }
+        | PaperMark::Curve { pen, .. }
+        | PaperMark::Text { pen, .. } => sheet.pens.get(*pen),
+        PaperMark::Dimension(dimension) => sheet.pens.get(dimension.text.pen),
+        PaperMark::Fill { .. }
+        | PaperMark::Area { .. }
+        | PaperMark::Gradient(_)
+        | PaperMark::Group(_) => None,
     })
 }
 

@@ -3,7 +3,7 @@
 use super::dxf_tags::{DxfStrokes, Tags, Target, begin};
 use durer::curve::pieces;
 use durer::math::DVec2;
-use durer::target::{Arc, Curve, Piece};
+use durer::target::{Curve, CurvePiece, EllipticArc};
 use std::f64::consts::TAU;
 
 /// Largest distance between arcs and the ellipses and cubic curves that they approximate, in
@@ -50,12 +50,15 @@ pub(super) fn vertices(curve: &Curve) -> Vec<(DVec2, f64)> {
 pub(super) fn turned_up(curve: &Curve, height: f64) -> Curve {
     let place = |p: DVec2| DVec2::new(p.x, height - p.y);
     let way = |v: DVec2| DVec2::new(v.x, -v.y);
-    let piece = |piece: &Piece| match *piece {
-        Piece::Line(end) => Piece::Line(place(end)),
-        Piece::Cubic(a, b, end) => Piece::Cubic(place(a), place(b), place(end)),
-        Piece::Arc(arc, end) => {
+    let piece = |piece: &CurvePiece| match *piece {
+        CurvePiece::Line(end) => CurvePiece::Line(place(end)),
+        CurvePiece::Cubic(a, b, end) => CurvePiece::Cubic(place(a), place(b), place(end)),
+        CurvePiece::Arc(arc, end) => {
             let (center, axis) = (place(arc.center), way(arc.axis));
-            Piece::Arc(Arc { center, axis, start: -arc.start, turn: -arc.turn, ..arc }, place(end))
+            CurvePiece::Arc(
+                EllipticArc { center, axis, start: -arc.start, turn: -arc.turn, ..arc },
+                place(end),
+            )
         }
     };
     let pieces = curve.pieces.iter().map(piece).collect();
@@ -64,12 +67,12 @@ pub(super) fn turned_up(curve: &Curve, height: f64) -> Curve {
 
 /// Writes an entity for each arc, and one for lines in a row and for cubic curves in a row.
 fn pieces_of(tags: &mut Tags, to: &Target<'_>, curve: &Curve) {
-    let all: Vec<(DVec2, &Piece)> = curve.iter().collect();
+    let all: Vec<(DVec2, &CurvePiece)> = curve.iter().collect();
     for row in all.chunk_by(|a, b| goes_on(a.1, b.1)) {
         match row {
-            [(start, Piece::Line(end))] => line(tags, to, *start, *end),
-            [(_, Piece::Arc(found, _))] => arc(tags, to, found),
-            [(start, Piece::Line(_)), ..] => {
+            [(start, CurvePiece::Line(end))] => line(tags, to, *start, *end),
+            [(_, CurvePiece::Arc(found, _))] => arc(tags, to, found),
+            [(start, CurvePiece::Line(_)), ..] => {
                 let ends = row.iter().map(|(_, piece)| piece.end());
                 let points: Vec<(DVec2, f64)> =
                     std::iter::once(*start).chain(ends).map(|p| (p, 0.0)).collect();
@@ -81,8 +84,11 @@ fn pieces_of(tags: &mut Tags, to: &Target<'_>, curve: &Curve) {
 }
 
 /// Returns whether two pieces are written as one entity.
-fn goes_on(a: &Piece, b: &Piece) -> bool {
-    matches!((a, b), (Piece::Line(_), Piece::Line(_)) | (Piece::Cubic(..), Piece::Cubic(..)))
+fn goes_on(a: &CurvePiece, b: &CurvePiece) -> bool {
+    matches!(
+        (a, b),
+        (CurvePiece::Line(_), CurvePiece::Line(_)) | (CurvePiece::Cubic(..), CurvePiece::Cubic(..))
+    )
 }
 
 /// Writes a line.
@@ -121,7 +127,7 @@ pub(super) fn polyline(tags: &mut Tags, to: &Target<'_>, points: &[(DVec2, f64)]
 }
 
 /// Writes a circle, an ellipse or a part of one; parts run counter-clockwise.
-fn arc(tags: &mut Tags, to: &Target<'_>, arc: &Arc) {
+fn arc(tags: &mut Tags, to: &Target<'_>, arc: &EllipticArc) {
     let (start, end) = match arc.turn < 0.0 {
         true => (arc.start + arc.turn, arc.start),
         false => (arc.start, arc.start + arc.turn),
@@ -154,11 +160,11 @@ fn within_turn(angle: f64) -> f64 {
 }
 
 /// Writes cubic Bézier curves in a row as one spline, with knots three times each where they meet.
-fn spline(tags: &mut Tags, to: &Target<'_>, row: &[(DVec2, &Piece)]) {
+fn spline(tags: &mut Tags, to: &Target<'_>, row: &[(DVec2, &CurvePiece)]) {
     let Some((start, _)) = row.first() else { return };
     let mut control = vec![*start];
     for (_, piece) in row {
-        if let Piece::Cubic(a, b, end) = piece {
+        if let CurvePiece::Cubic(a, b, end) = piece {
             control.extend([*a, *b, *end]);
         }
     }

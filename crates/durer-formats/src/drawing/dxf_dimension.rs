@@ -6,7 +6,7 @@ use super::dxf_tags::{DIMSTYLES, DxfStrokes, Tags, begin, string, symbol};
 use durer::math::DVec2;
 use durer::target::dimension::{DimensionText, Measure};
 use durer::target::sheet::Dimension;
-use durer::target::sheet::{Mark, Sheet};
+use durer::target::sheet::{PaperMark, Sheet};
 
 /// The dimensions of a sheet in the order of drawing, with their entries in the file's tables.
 pub(super) struct Dimensions<'a> {
@@ -30,7 +30,7 @@ impl<'a> Dimensions<'a> {
         let mut found = Self { all: Vec::new(), styles: Vec::new(), strokes };
         for layer in &sheet.layers {
             for mark in &layer.marks {
-                let Mark::Dimension(dimension) = mark else { continue };
+                let PaperMark::Dimension(dimension) = mark else { continue };
                 let style = (dimension.units_per_millimetre, dimension.text.height);
                 if !found.styles.contains(&style) {
                     found.styles.push(style);
@@ -89,7 +89,7 @@ impl<'a> Dimensions<'a> {
             block(tags, &block_name(i), listed.record, |tags| {
                 for mark in &listed.dimension.marks {
                     match mark {
-                        Mark::Fill { rings, .. } => solids(tags, sheet, &listed.layer, rings),
+                        PaperMark::Fill { rings, .. } => solids(tags, sheet, &listed.layer, rings),
                         _ => entity(tags, sheet, &listed.layer, mark, self.strokes),
                     }
                 }

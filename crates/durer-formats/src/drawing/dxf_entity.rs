@@ -6,8 +6,8 @@ use super::dxf_tags::{
 };
 use durer::math::DVec2;
 use durer::target::Curve;
-use durer::target::drawing::Anchor;
-use durer::target::sheet::{Mark, Sheet};
+use durer::target::drawing::TextAnchor;
+use durer::target::sheet::{PaperMark, Sheet};
 
 /// Writes a block with its entities; names with a star are anonymous, except the two spaces'.
 pub(super) fn block(tags: &mut Tags, name: &str, record: u32, entities: impl FnOnce(&mut Tags)) {
@@ -34,12 +34,12 @@ pub(super) fn entity(
     tags: &mut Tags,
     sheet: &Sheet,
     layer: &str,
-    mark: &Mark,
+    mark: &PaperMark,
     strokes: DxfStrokes,
 ) {
     let place = |p: &DVec2| DVec2::new(p.x, sheet.size.y - p.y);
     match mark {
-        Mark::Stroke { points, closed, pen } => {
+        PaperMark::Stroke { points, closed, pen } => {
             let points: Vec<DVec2> = points.iter().map(place).collect();
             let to = Target { layer, pen: sheet.pens.get(*pen) };
             match &points[..] {
@@ -54,36 +54,36 @@ pub(super) fn entity(
                 }
             }
         }
-        Mark::Curve { curve, pen } => {
+        PaperMark::Curve { curve, pen } => {
             let to = Target { layer, pen: sheet.pens.get(*pen) };
             dxf_curve::write(tags, &to, curve, sheet.size.y, strokes);
         }
-        Mark::Text { at, text, height, anchor, pen } => {
+        PaperMark::Text { at, text, height, anchor, pen } => {
             begin(tags, "TEXT", layer, sheet.pens.get(*pen));
             let at = place(at);
             tags.class("AcDbText").place3(10, at).length(40, *height).tag(1, &string(text));
             let alignment = match anchor {
-                Anchor::Start => 0,
-                Anchor::Middle => 1,
-                Anchor::End => 2,
+                TextAnchor::Start => 0,
+                TextAnchor::Middle => 1,
+                TextAnchor::End => 2,
             };
             if alignment != 0 {
                 tags.int(72, alignment).place3(11, at);
             }
             tags.class("AcDbText");
         }
-        Mark::Fill { rings, color, .. } => {
+        PaperMark::Fill { rings, color, .. } => {
             begin_hatch(tags, layer, *color);
             let ring = |r: &Vec<DVec2>| r.iter().map(|p| (place(p), 0.0)).collect();
             hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
-        Mark::Area { rings, color, .. } => {
+        PaperMark::Area { rings, color, .. } => {
             begin_hatch(tags, layer, *color);
             let ring = |r: &Curve| dxf_curve::vertices(&dxf_curve::turned_up(r, sheet.size.y));
             hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
         // Dimensions are entities of their own kind, with blocks; files with gradients and groups are refused.
-        Mark::Dimension(_) | Mark::Gradient(_) | Mark::Group(_) => {}
+        PaperMark::Dimension(_) | PaperMark::Gradient(_) | PaperMark::Group(_) => {}
     }
 }
 

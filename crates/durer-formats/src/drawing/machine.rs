@@ -4,9 +4,9 @@ use super::dxf_curve::turned_up;
 use crate::{Error, Result};
 use durer::curve::pieces;
 use durer::math::DVec2;
-use durer::paper::order::{Chain, Stroke, ordered_chains};
+use durer::paper::order::{Chain, PenStroke, ordered_chains};
 use durer::paper::{dashes, dimension_strokes, text_strokes};
-use durer::target::sheet::{Mark, Sheet};
+use durer::target::sheet::{PaperMark, Sheet};
 
 /// Largest distance between chords and curves, in millimetres: less than half of a step of
 /// plotters.
@@ -126,7 +126,7 @@ pub fn ways(chains: Vec<Chain>, start: DVec2) -> Vec<Way> {
 
 fn way(chain: Chain) -> Option<Way> {
     match chain {
-        Chain::Straight(Stroke { points, closed }) => {
+        Chain::Straight(PenStroke { points, closed }) => {
             let start = *points.first()?;
             let rest = points.into_iter().skip(1).chain(closed.then_some(start));
             Some(Way { start, steps: rest.map(|p| (p, 0.0)).collect() })
@@ -154,13 +154,13 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     for layer in &sheet.layers {
         for mark in layer.marks.iter().flat_map(with_parts) {
             let pass = match mark {
-                Mark::Fill { .. } | Mark::Area { .. } => Some(&mut areas),
+                PaperMark::Fill { .. } | PaperMark::Area { .. } => Some(&mut areas),
                 // Files with groups are refused.
-                Mark::Gradient(_) | Mark::Group(_) => None,
-                Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
-                    pass_of.get(*pen).and_then(|i| found.get_mut(*i))
-                }
-                Mark::Dimension(dimension) => {
+                PaperMark::Gradient(_) | PaperMark::Group(_) => None,
+                PaperMark::Stroke { pen, .. }
+                | PaperMark::Curve { pen, .. }
+                | PaperMark::Text { pen, .. } => pass_of.get(*pen).and_then(|i| found.get_mut(*i)),
+                PaperMark::Dimension(dimension) => {
                     pass_of.get(dimension.text.pen).and_then(|i| found.get_mut(*i))
                 }
             };
@@ -176,9 +176,9 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
 }
 
 /// Returns a mark and the marks that it consists of.
-fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
+fn with_parts(mark: &PaperMark) -> impl Iterator<Item = &PaperMark> {
     let parts = match mark {
-        Mark::Dimension(dimension) => &dimension.marks[..],
+        PaperMark::Dimension(dimension) => &dimension.marks[..],
         _ => &[],
     };
     std::iter::once(mark).chain(parts)
@@ -201,11 +201,11 @@ fn fold(passes: &mut Vec<Pass>, most: usize) {
 }
 
 /// Returns a mark as chains for pens.
-fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
+fn chains_of(mark: &PaperMark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
     let height = sheet.size.y;
     let stroke = |points: &[DVec2], closed: bool| {
         let points = points.iter().map(|p| DVec2::new(p.x, height - p.y));
-        Chain::Straight(Stroke { points: points.collect(), closed })
+        Chain::Straight(PenStroke { points: points.collect(), closed })
     };
     let open = |chains: Vec<Vec<DVec2>>| chains.iter().map(|c| stroke(c, false)).collect();
     let dashes = |pen: usize| sheet.pens.get(pen).map(|p| &p.dashes[..]).unwrap_or_default();
@@ -214,22 +214,24 @@ fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
         dashes => open(dashes::cut(points, closed, dashes)),
     };
     match mark {
-        Mark::Stroke { points, closed, pen } => dashed(points, *closed, *pen),
-        Mark::Curve { curve, pen } if arcs && dashes(*pen).is_empty() => {
+        PaperMark::Stroke { points, closed, pen } => dashed(points, *closed, *pen),
+        PaperMark::Curve { curve, pen } if arcs && dashes(*pen).is_empty() => {
             vec![Chain::Curved(turned_up(curve, height))]
         }
-        Mark::Curve { curve, pen } => dashed(&pieces::points(curve, CHORDS), curve.closed, *pen),
-        Mark::Fill { rings, .. } => rings.iter().map(|ring| stroke(ring, true)).collect(),
-        Mark::Area { rings, .. } if arcs => {
+        PaperMark::Curve { curve, pen } => {
+            dashed(&pieces::points(curve, CHORDS), curve.closed, *pen)
+        }
+        PaperMark::Fill { rings, .. } => rings.iter().map(|ring| stroke(ring, true)).collect(),
+        PaperMark::Area { rings, .. } if arcs => {
             rings.iter().map(|ring| Chain::Curved(turned_up(ring, height))).collect()
         }
-        Mark::Area { rings, .. } => {
+        PaperMark::Area { rings, .. } => {
             rings.iter().map(|ring| stroke(&pieces::points(ring, CHORDS), true)).collect()
         }
-        Mark::Text { at, text, height, anchor, .. } => {
+        PaperMark::Text { at, text, height, anchor, .. } => {
             open(text_strokes(*at, text, *height, *anchor))
         }
-        Mark::Dimension(dimension) => open(dimension_strokes(&dimension.text)),
-        Mark::Gradient(_) | Mark::Group(_) => Vec::new(),
+        PaperMark::Dimension(dimension) => open(dimension_strokes(&dimension.text)),
+        PaperMark::Gradient(_) | PaperMark::Group(_) => Vec::new(),
     }
 }

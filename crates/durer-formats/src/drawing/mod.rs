@@ -30,7 +30,7 @@ pub use svg::write as write_svg;
 
 use crate::{Error, Result};
 use durer::target::drawing::Drawing;
-use durer::target::sheet::{Mark, Sheet};
+use durer::target::sheet::{PaperMark, Sheet};
 use durer::work::Work;
 use std::io::Write;
 use std::str::FromStr;
@@ -135,8 +135,8 @@ pub fn write(
     options: &FileOptions,
 ) -> Result<()> {
     let refused = sheet.layers.iter().flat_map(|l| &l.marks).find_map(|mark| match mark {
-        Mark::Group(_) => Some("a group of marks with a clip path or an opacity"),
-        Mark::Gradient(_) => Some("a gradient"),
+        PaperMark::Group(_) => Some("a group of marks with a clip path or an opacity"),
+        PaperMark::Gradient(_) => Some("a gradient"),
         _ => None,
     });
     if let Some(what) = refused
@@ -146,7 +146,7 @@ pub fn write(
     }
     if format == DrawingFormat::Dxf && !options.dxf_frame.is_sheet() {
         let mut marks = sheet.layers.iter().flat_map(|layer| &layer.marks);
-        if marks.any(|mark| matches!(mark, Mark::Dimension(_))) {
+        if marks.any(|mark| matches!(mark, PaperMark::Dimension(_))) {
             let (what, instead) = ("a dimension in units of a map", "write millimetres");
             return Err(durer::Error::Unsupported { what, instead }.into());
         }

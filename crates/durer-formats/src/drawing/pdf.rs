@@ -9,8 +9,8 @@ use durer::curve::{PathElement, pieces};
 use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::Curve;
-use durer::target::drawing::Anchor;
-use durer::target::sheet::{GradientArea, Mark, MarkGroup, Pen, Sheet};
+use durer::target::drawing::TextAnchor;
+use durer::target::sheet::{GradientArea, MarkGroup, PaperMark, Pen, Sheet};
 use durer::work::{Charge, Work};
 use pdf_writer::writers::Resources;
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
@@ -213,21 +213,21 @@ fn content(sheet: &Sheet, scale: f64, found: &mut Found, charge: &mut Charge) ->
     Ok(text)
 }
 
-fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: &mut Found) {
+fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &PaperMark, found: &mut Found) {
     let fill = |even_odd: bool| if even_odd { "f*\n" } else { "f\n" };
     match mark {
-        Mark::Fill { rings, color, even_odd } => {
+        PaperMark::Fill { rings, color, even_odd } => {
             set_fill(text, state, *color, &mut found.alphas);
             rings.iter().for_each(|ring| path(text, ring, true));
             *text += fill(*even_odd);
         }
-        Mark::Area { rings, color, even_odd } => {
+        PaperMark::Area { rings, color, even_odd } => {
             set_fill(text, state, *color, &mut found.alphas);
             curves(text, rings);
             *text += fill(*even_odd);
         }
-        Mark::Gradient(area) => put_gradient(text, state, sheet, area, found),
-        Mark::Stroke { points, closed, pen } => {
+        PaperMark::Gradient(area) => put_gradient(text, state, sheet, area, found),
+        PaperMark::Stroke { points, closed, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, &mut found.alphas);
             let length = dashes::length(points, *closed);
@@ -235,7 +235,7 @@ fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: 
             path(text, points, *closed);
             *text += "S\n";
         }
-        Mark::Curve { curve, pen } => {
+        PaperMark::Curve { curve, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, &mut found.alphas);
             let length = pieces::length(curve);
@@ -243,14 +243,14 @@ fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: 
             curves(text, std::slice::from_ref(curve));
             *text += "S\n";
         }
-        Mark::Text { at, text: words, height, anchor, pen } => {
+        PaperMark::Text { at, text: words, height, anchor, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, &mut found.alphas);
             set_dashes(text, state, None);
             found.words.write(text, (*at, DVec2::X), words, *height, *anchor);
             letters(text, &text_strokes(*at, words, *height, *anchor));
         }
-        Mark::Dimension(dimension) => {
+        PaperMark::Dimension(dimension) => {
             for mark in &dimension.marks {
                 put(text, state, sheet, mark, found);
             }
@@ -263,11 +263,11 @@ fn put(text: &mut String, state: &mut State, sheet: &Sheet, mark: &Mark, found: 
                 (words.at, words.along),
                 &words.text,
                 words.height,
-                Anchor::Middle,
+                TextAnchor::Middle,
             );
             letters(text, &dimension_strokes(words));
         }
-        Mark::Group(group) => put_group(text, state, sheet, group, found),
+        PaperMark::Group(group) => put_group(text, state, sheet, group, found),
     }
 }
 

@@ -4,8 +4,8 @@
 use super::number::short;
 use crate::Result;
 use durer::math::{DAffine2, DVec2};
-use durer::target::gradient::{Gradient, Shape, Spread};
-use durer::target::sheet::{Mark, Sheet};
+use durer::target::gradient::{Gradient, GradientShape, Spread};
+use durer::target::sheet::{PaperMark, Sheet};
 use pdf_writer::writers::Resources;
 use pdf_writer::{Dict, Name, Obj, Pdf, Rect, Ref};
 
@@ -43,11 +43,11 @@ pub(super) struct Objects {
 
 /// Refuses gradients that repeat too often on the sheet.
 pub(super) fn check(sheet: &Sheet) -> Result<()> {
-    let mut marks: Vec<&Mark> = sheet.layers.iter().flat_map(|layer| &layer.marks).collect();
+    let mut marks: Vec<&PaperMark> = sheet.layers.iter().flat_map(|layer| &layer.marks).collect();
     while let Some(mark) = marks.pop() {
         match mark {
-            Mark::Group(group) => marks.extend(&group.marks),
-            Mark::Gradient(area) => {
+            PaperMark::Group(group) => marks.extend(&group.marks),
+            PaperMark::Gradient(area) => {
                 let [lo, hi] = reach(&area.gradient, sheet.size);
                 let colors = (hi - lo) * area.gradient.stops.len() as f64;
                 if area.gradient.spread != Spread::Pad && (colors.is_nan() || colors > MOST) {
@@ -89,8 +89,8 @@ impl Gradients {
         let ramp = ramp(gradient, range);
         let ramp = ramp.into_iter().map(|(t, color)| (t, channels(color))).collect();
         let ([a, b], radii) = match gradient.shape {
-            Shape::Linear { start, end } => ([start, end], None),
-            Shape::Radial { center, radius, focus, focus_radius } => {
+            GradientShape::Linear { start, end } => ([start, end], None),
+            GradientShape::Radial { center, radius, focus, focus_radius } => {
                 let at = |t: f64| (focus_radius + t * (radius - focus_radius)).max(0.0);
                 ([focus, center], Some(range.map(at)))
             }
@@ -218,7 +218,7 @@ fn range(gradient: &Gradient, size: DVec2) -> [f64; 2] {
     };
     // No circle has a radius below 0.
     match gradient.shape {
-        Shape::Radial { radius, focus_radius, .. } if radius != focus_radius => {
+        GradientShape::Radial { radius, focus_radius, .. } if radius != focus_radius => {
             let apex = focus_radius / (focus_radius - radius);
             if radius > focus_radius { [lo.max(apex), hi] } else { [lo, hi.min(apex)] }
         }
@@ -232,13 +232,13 @@ fn reach(gradient: &Gradient, size: DVec2) -> [f64; 2] {
     let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)];
     let corners = corners.map(|corner| back.transform_point2(corner));
     match gradient.shape {
-        Shape::Linear { start, end } => {
+        GradientShape::Linear { start, end } => {
             let way = end - start;
             let along = corners.map(|p| (p - start).dot(way) / way.length_squared());
             let (lo, hi) = (f64::INFINITY, f64::NEG_INFINITY);
             along.iter().fold([lo, hi], |[lo, hi], t| [lo.min(*t), hi.max(*t)])
         }
-        Shape::Radial { center, radius, focus, focus_radius } => {
+        GradientShape::Radial { center, radius, focus, focus_radius } => {
             let far = corners.iter().map(|p| p.distance(focus)).fold(0.0, f64::max);
             // The side of a circle towards a point moves at least so far for each step of the parameter.
             let step = (center.distance(focus) - (radius - focus_radius).abs()).abs();

@@ -5,7 +5,7 @@
 use super::number::{push, short};
 use durer::curve::stroke_font;
 use durer::math::DVec2;
-use durer::target::drawing::Anchor;
+use durer::target::drawing::TextAnchor;
 use pdf_writer::types::{SystemInfo, UnicodeCmap};
 use pdf_writer::{Name, Pdf, Ref, Str};
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ impl Words {
         (at, along): (DVec2, DVec2),
         words: &str,
         height: f64,
-        anchor: Anchor,
+        anchor: TextAnchor,
     ) {
         let codes: Vec<u8> =
             words.chars().filter(|c| !c.is_control()).map(|c| self.code(c)).collect();

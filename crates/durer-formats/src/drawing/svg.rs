@@ -9,7 +9,7 @@ use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::gradient::Gradient;
-use durer::target::sheet::{ClipPath, Mark, Pen, Sheet, SheetLayer};
+use durer::target::sheet::{ClipPath, PaperMark, Pen, Sheet, SheetLayer};
 use std::collections::BTreeMap;
 use std::io::Write;
 
@@ -102,12 +102,14 @@ fn write_layer(
 }
 
 /// Returns the pen of a mark's first stroke.
-fn pen_of(mark: &Mark) -> Option<usize> {
+fn pen_of(mark: &PaperMark) -> Option<usize> {
     match mark {
-        Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
-        Mark::Fill { .. } | Mark::Area { .. } | Mark::Gradient(_) => None,
-        Mark::Group(group) => group.marks.iter().find_map(pen_of),
-        Mark::Dimension(d) => d.marks.iter().find_map(pen_of).or(Some(d.text.pen)),
+        PaperMark::Stroke { pen, .. }
+        | PaperMark::Curve { pen, .. }
+        | PaperMark::Text { pen, .. } => Some(*pen),
+        PaperMark::Fill { .. } | PaperMark::Area { .. } | PaperMark::Gradient(_) => None,
+        PaperMark::Group(group) => group.marks.iter().find_map(pen_of),
+        PaperMark::Dimension(d) => d.marks.iter().find_map(pen_of).or(Some(d.text.pen)),
     }
 }
 
@@ -115,7 +117,7 @@ fn pen_of(mark: &Mark) -> Option<usize> {
 fn write_mark(
     text: &mut String,
     sheet: &Sheet,
-    mark: &Mark,
+    mark: &PaperMark,
     (common, defined): (Option<usize>, &mut Defined),
 ) {
     let own_pen = |pen: usize| match sheet.pens.get(pen) {
@@ -123,7 +125,7 @@ fn write_mark(
         _ => String::new(),
     };
     match mark {
-        Mark::Stroke { points, closed, pen } => {
+        PaperMark::Stroke { points, closed, pen } => {
             *text += "<path";
             *text += &own_pen(*pen);
             let length = dashes::length(points, *closed);
@@ -132,7 +134,7 @@ fn write_mark(
             path(text, points, *closed);
             *text += "\"/>\n";
         }
-        Mark::Curve { curve, pen } => {
+        PaperMark::Curve { curve, pen } => {
             let length = pieces::length(curve);
             let style = own_pen(*pen) + &dash_array(sheet.pens.get(*pen), length, curve.closed);
             match curve.whole().filter(|arc| arc.is_circular()) {
@@ -148,26 +150,26 @@ fn write_mark(
                 }
             }
         }
-        Mark::Fill { rings, color, even_odd } => {
+        PaperMark::Fill { rings, color, even_odd } => {
             fill_style(text, &paint("fill", *color), *even_odd, common);
             rings.iter().for_each(|ring| path(text, ring, true));
             *text += "\"/>\n";
         }
-        Mark::Area { rings, color, even_odd } => {
+        PaperMark::Area { rings, color, even_odd } => {
             fill_style(text, &paint("fill", *color), *even_odd, common);
             rings.iter().for_each(|ring| svg_curve::path(text, ring));
             *text += "\"/>\n";
         }
-        Mark::Gradient(area) => {
+        PaperMark::Gradient(area) => {
             let id = defined.gradient(text, &area.gradient);
             fill_style(text, &format!(" fill=\"url(#{id})\""), area.even_odd, common);
             area.rings.iter().for_each(|ring| svg_curve::path(text, ring));
             *text += "\"/>\n";
         }
-        Mark::Text { at, text: words, height, anchor, pen } => {
+        PaperMark::Text { at, text: words, height, anchor, pen } => {
             letters(text, words, &own_pen(*pen), &text_strokes(*at, words, *height, *anchor));
         }
-        Mark::Dimension(dimension) => {
+        PaperMark::Dimension(dimension) => {
             *text += "<g>\n";
             for mark in &dimension.marks {
                 write_mark(text, sheet, mark, (common, &mut *defined));
@@ -176,7 +178,7 @@ fn write_mark(
             letters(text, &words.text, &own_pen(words.pen), &dimension_strokes(words));
             *text += "</g>\n";
         }
-        Mark::Group(group) => {
+        PaperMark::Group(group) => {
             let clip = group.clip.as_ref().map(|clip| clip_path(text, clip, defined));
             *text += "<g";
             if let Some(id) = clip {

@@ -2,7 +2,7 @@
 
 use super::number::{push, short};
 use durer::math::DVec2;
-use durer::target::{Arc, Curve, Piece};
+use durer::target::{Curve, CurvePiece, EllipticArc};
 
 /// Digits after the point of a millimetre: a micrometre is far below what any plotter resolves.
 pub(super) const DIGITS: usize = 3;
@@ -18,9 +18,9 @@ pub(super) fn path(text: &mut String, curve: &Curve) {
     pair(text, last);
     for piece in &curve.pieces {
         match *piece {
-            Piece::Line(end) => line(text, &mut last, end),
-            Piece::Cubic(a, b, end) => step(text, 'c', &mut last, &[a, b, end]),
-            Piece::Arc(arc, end) => arcs(text, &mut last, &arc, end),
+            CurvePiece::Line(end) => line(text, &mut last, end),
+            CurvePiece::Cubic(a, b, end) => step(text, 'c', &mut last, &[a, b, end]),
+            CurvePiece::Arc(arc, end) => arcs(text, &mut last, &arc, end),
         }
     }
     if curve.closed {
@@ -54,7 +54,7 @@ fn step(text: &mut String, command: char, last: &mut DVec2, points: &[DVec2]) {
     }
 }
 
-fn arcs(text: &mut String, last: &mut DVec2, arc: &Arc, end: DVec2) {
+fn arcs(text: &mut String, last: &mut DVec2, arc: &EllipticArc, end: DVec2) {
     let parts = (arc.turn.abs() / FURTHEST).ceil().max(1.0);
     let radii = arc.radii();
     let angle = match arc.is_circular() {

@@ -3,7 +3,7 @@
 use super::number::short;
 use super::svg_curve::DIGITS;
 use durer::math::DAffine2;
-use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::gradient::{Gradient, GradientShape, Spread};
 
 /// Digits after the point of lengths: one more than those of places, and for circles of radius 1.
 const FINE: usize = 6;
@@ -24,11 +24,11 @@ pub(super) fn paint(name: &str, [r, g, b, a]: [u8; 4]) -> String {
 /// Returns a gradient in the user space, as text before and after the identifier in its first tag.
 pub(super) fn definition(gradient: &Gradient) -> [String; 2] {
     let (name, places) = match gradient.shape {
-        Shape::Linear { start, end } => {
+        GradientShape::Linear { start, end } => {
             let places = [("x1", start.x), ("y1", start.y), ("x2", end.x), ("y2", end.y)];
             ("linearGradient", places.to_vec())
         }
-        Shape::Radial { center, radius, focus, focus_radius } => {
+        GradientShape::Radial { center, radius, focus, focus_radius } => {
             let mut places = vec![("cx", center.x), ("cy", center.y), ("r", radius)];
             if focus != center {
                 places.extend([("fx", focus.x), ("fy", focus.y)]);

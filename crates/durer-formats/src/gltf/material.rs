@@ -10,8 +10,8 @@ use crate::wording::counted;
 use crate::{Error, Place, Resources, Result, Warning, image, uri};
 use durer::math::{Vec3, Vec4};
 use durer::scene::{
-    AlphaMode, Filter, Image, Material, MipFilter, Sampler as SceneSampler, Scene, ShadingModel,
-    Texture, Wrap,
+    AlphaMode, Image, Material, MipFilter, Sampler as SceneSampler, Scene, ShadingModel, Texture,
+    TextureFilter, Wrap,
 };
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -144,14 +144,18 @@ fn sampler(sampler: &Sampler) -> SceneSampler {
         _ => Wrap::Repeat,
     };
     let (min, mip) = match number(sampler.min_filter) {
-        9728 => (Filter::Nearest, MipFilter::None),
-        9729 => (Filter::Linear, MipFilter::None),
-        9984 => (Filter::Nearest, MipFilter::Nearest),
-        9985 => (Filter::Linear, MipFilter::Nearest),
-        9986 => (Filter::Nearest, MipFilter::Linear),
-        _ => (Filter::Linear, MipFilter::Linear),
+        9728 => (TextureFilter::Nearest, MipFilter::None),
+        9729 => (TextureFilter::Linear, MipFilter::None),
+        9984 => (TextureFilter::Nearest, MipFilter::Nearest),
+        9985 => (TextureFilter::Linear, MipFilter::Nearest),
+        9986 => (TextureFilter::Nearest, MipFilter::Linear),
+        _ => (TextureFilter::Linear, MipFilter::Linear),
     };
-    let mag = if number(sampler.mag_filter) == 9728 { Filter::Nearest } else { Filter::Linear };
+    let mag = if number(sampler.mag_filter) == 9728 {
+        TextureFilter::Nearest
+    } else {
+        TextureFilter::Linear
+    };
     SceneSampler { mag, min, mip, wrap_u: wrap(sampler.wrap_s), wrap_v: wrap(sampler.wrap_t) }
 }
 

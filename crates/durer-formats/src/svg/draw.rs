@@ -7,7 +7,7 @@ use durer::curve::Path;
 use durer::math::DAffine2;
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
-use durer::raster::paint::{Blend, Canvas, MaskKind, Paint, PaintTarget};
+use durer::raster::paint::{BlendFunction, Canvas, MaskKind, Paint, PaintTarget};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use usvg::{Group, Node};
@@ -86,7 +86,7 @@ impl<'a, T: PaintTarget> Painter<'a, T> {
         match single_path(group) {
             _ if !group.should_isolate() => self.nodes(group, map),
             // Content that paints each pixel once needs no layer.
-            Some(path) if blend == Blend::Normal => self.path(path, map, opacity),
+            Some(path) if blend == BlendFunction::Normal => self.path(path, map, opacity),
             _ => {
                 self.canvas.push_group();
                 self.nodes(group, map);

@@ -3,7 +3,7 @@
 use crate::{Error, Limits, Place, Result};
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::{Filter, Paint, Pattern};
+use durer::raster::paint::{ImageFilter, Paint, Pattern};
 use durer::target::Pixels;
 use durer::target::gradient::Spread;
 use std::sync::Arc;
@@ -33,14 +33,14 @@ pub(super) fn paint(
     let size = DVec2::new(node.size().width().into(), node.size().height().into());
     let filter = match node.rendering_mode() {
         usvg::ImageRendering::OptimizeQuality | usvg::ImageRendering::HighQuality => {
-            Filter::Bicubic
+            ImageFilter::Bicubic
         }
-        usvg::ImageRendering::Smooth => Filter::Bilinear,
+        usvg::ImageRendering::Smooth => ImageFilter::Bilinear,
         usvg::ImageRendering::OptimizeSpeed
         | usvg::ImageRendering::CrispEdges
-        | usvg::ImageRendering::Pixelated => Filter::Nearest,
+        | usvg::ImageRendering::Pixelated => ImageFilter::Nearest,
     };
-    if filter != Filter::Nearest {
+    if filter != ImageFilter::Nearest {
         image = reduced(image, size, pixel_from_node);
     }
     let pixels = DVec2::new(image.width().into(), image.height().into());

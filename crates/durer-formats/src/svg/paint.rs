@@ -2,9 +2,9 @@
 
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::{Blend, Canvas, Filter, Paint, Pattern};
+use durer::raster::paint::{BlendFunction, Canvas, ImageFilter, Paint, Pattern};
 use durer::target::Pixels;
-use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::gradient::{Gradient, GradientShape, Spread};
 use std::sync::Arc;
 use usvg::tiny_skia_path::{self, PathSegment};
 
@@ -47,26 +47,26 @@ pub(super) fn rectangle(rect: usvg::NonZeroRect) -> Path {
     Path::rectangle(side(rect.x()), side(rect.y()), side(rect.width()), side(rect.height()))
 }
 
-pub(super) fn blend(mode: usvg::BlendMode) -> Blend {
+pub(super) fn blend(mode: usvg::BlendMode) -> BlendFunction {
     use usvg::BlendMode as Mode;
     match mode {
-        Mode::Normal => Blend::Normal,
-        Mode::Multiply => Blend::Multiply,
-        Mode::Screen => Blend::Screen,
-        Mode::Overlay => Blend::Overlay,
-        Mode::Darken => Blend::Darken,
-        Mode::Lighten => Blend::Lighten,
-        Mode::ColorDodge => Blend::ColorDodge,
-        Mode::ColorBurn => Blend::ColorBurn,
-        Mode::HardLight => Blend::HardLight,
-        Mode::SoftLight => Blend::SoftLight,
-        Mode::Difference => Blend::Difference,
-        Mode::Exclusion => Blend::Exclusion,
-        Mode::Hue => Blend::Hue,
-        Mode::Saturation => Blend::Saturation,
-        Mode::Color => Blend::Color,
-        Mode::Luminosity => Blend::Luminosity,
-        Mode::PlusLighter => Blend::PlusLighter,
+        Mode::Normal => BlendFunction::Normal,
+        Mode::Multiply => BlendFunction::Multiply,
+        Mode::Screen => BlendFunction::Screen,
+        Mode::Overlay => BlendFunction::Overlay,
+        Mode::Darken => BlendFunction::Darken,
+        Mode::Lighten => BlendFunction::Lighten,
+        Mode::ColorDodge => BlendFunction::ColorDodge,
+        Mode::ColorBurn => BlendFunction::ColorBurn,
+        Mode::HardLight => BlendFunction::HardLight,
+        Mode::SoftLight => BlendFunction::SoftLight,
+        Mode::Difference => BlendFunction::Difference,
+        Mode::Exclusion => BlendFunction::Exclusion,
+        Mode::Hue => BlendFunction::Hue,
+        Mode::Saturation => BlendFunction::Saturation,
+        Mode::Color => BlendFunction::Color,
+        Mode::Luminosity => BlendFunction::Luminosity,
+        Mode::PlusLighter => BlendFunction::PlusLighter,
     }
 }
 
@@ -76,11 +76,12 @@ pub(super) fn plain(paint: &usvg::Paint) -> Option<Paint> {
     match paint {
         usvg::Paint::Color(c) => Some(Paint::Color([c.red, c.green, c.blue, 255])),
         usvg::Paint::LinearGradient(g) => {
-            let shape = Shape::Linear { start: at(g.x1(), g.y1()), end: at(g.x2(), g.y2()) };
+            let shape =
+                GradientShape::Linear { start: at(g.x1(), g.y1()), end: at(g.x2(), g.y2()) };
             Some(gradient(g, shape))
         }
         usvg::Paint::RadialGradient(g) => {
-            let shape = Shape::Radial {
+            let shape = GradientShape::Radial {
                 center: at(g.cx(), g.cy()),
                 radius: f64::from(g.r().get()),
                 focus: at(g.fx(), g.fy()),
@@ -92,7 +93,7 @@ pub(super) fn plain(paint: &usvg::Paint) -> Option<Paint> {
     }
 }
 
-fn gradient(g: &usvg::BaseGradient, shape: Shape) -> Paint {
+fn gradient(g: &usvg::BaseGradient, shape: GradientShape) -> Paint {
     let stop = |s: &usvg::Stop| {
         let c = s.color();
         let alpha = (s.opacity().get() * 255.0).round() as u8;
@@ -115,7 +116,7 @@ pub(super) struct Tile {
     pub pixel_from_content: DAffine2,
     /// Map from the tile's pixels to the space of the path.
     path_from_pixel: DAffine2,
-    filter: Filter,
+    filter: ImageFilter,
 }
 
 impl Tile {
@@ -135,10 +136,10 @@ impl Tile {
         let placed = (pixel_from_path * path_from_pattern).transform_point2(corner);
         let is_whole = |v: DVec2| (v - v.round()).abs().max_element() < WHOLE;
         let (finer, filter) = match is_upright && is_whole(pixels) && is_whole(placed) {
-            true => (1.0, Filter::Nearest),
+            true => (1.0, ImageFilter::Nearest),
             false => {
                 let fitting = (FINER_PIXELS / (pixels.x * pixels.y)).sqrt();
-                (fitting.floor().clamp(1.0, FINER), Filter::Area)
+                (fitting.floor().clamp(1.0, FINER), ImageFilter::Area)
             }
         };
         let pixels = (pixels * finer).round().clamp(DVec2::ONE, DVec2::splat(MAX_TILE));
@@ -155,7 +156,7 @@ impl Tile {
     }
 
     /// Returns the filter between the tile's pixels.
-    pub fn filter(&self) -> Filter {
+    pub fn filter(&self) -> ImageFilter {
         self.filter
     }
 

@@ -6,7 +6,7 @@
 use super::paint::Tile;
 use durer::curve::Path;
 use durer::math::DAffine2;
-use durer::raster::paint::{Filter, Paint};
+use durer::raster::paint::{ImageFilter, Paint};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use usvg::ImageKind;
@@ -30,7 +30,7 @@ pub(super) struct TileKey {
 impl TileKey {
     pub fn new(pattern: &Arc<usvg::Pattern>, tile: &Tile) -> Self {
         let pattern = Arc::as_ptr(pattern) as usize;
-        let is_averaged = tile.filter() == Filter::Area;
+        let is_averaged = tile.filter() == ImageFilter::Area;
         Self { pattern, size: [tile.width, tile.height], is_averaged }
     }
 }

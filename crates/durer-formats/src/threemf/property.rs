@@ -3,7 +3,7 @@
 //! Source: 3MF Consortium, *Materials and Properties Extension* 1.2.1, 2021, chapters 2 to 6.
 
 use durer::math::{Vec2, Vec3, Vec4};
-use durer::scene::{Filter, Sampler, Wrap};
+use durer::scene::{Sampler, TextureFilter, Wrap};
 use std::collections::HashMap;
 
 /// Look of a point of a surface.
@@ -56,7 +56,8 @@ impl Texture2d {
             Some("clamp" | "none") => Wrap::ClampToEdge,
             _ => Wrap::Repeat,
         };
-        let filter = if filter == Some("nearest") { Filter::Nearest } else { Filter::Linear };
+        let filter =
+            if filter == Some("nearest") { TextureFilter::Nearest } else { TextureFilter::Linear };
         let [wrap_u, wrap_v] = [wrap(u), wrap(v)];
         let sampler = Sampler { mag: filter, min: filter, wrap_u, wrap_v, ..Sampler::default() };
         Self { path: path.trim_start_matches('/').to_owned(), sampler }

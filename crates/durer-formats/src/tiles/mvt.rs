@@ -1,7 +1,7 @@
 //! Mapbox Vector Tiles, version 2.1: <https://github.com/mapbox/vector-tile-spec/tree/master/2.1>.
 
 use super::protobuf::{Message, zigzag};
-use durer::clip::tiles::Shape;
+use durer::clip::tiles::GridShape;
 use durer::math::I64Vec2;
 use std::collections::HashMap;
 
@@ -134,7 +134,7 @@ impl<'a> Layer<'a> {
 
     /// Adds a feature with its properties, each a name and a value by their numbers in the dictionary. Shapes are on
     /// the grid of the tile, y downwards; the signed areas of outer rings are positive.
-    pub fn add(&mut self, id: Option<u64>, properties: &[(u32, u32)], shape: &Shape) {
+    pub fn add(&mut self, id: Option<u64>, properties: &[(u32, u32)], shape: &GridShape) {
         let mut message = Message::default();
         if let Some(id) = id {
             message.unsigned(1, id);
@@ -210,19 +210,19 @@ impl Pen {
 }
 
 /// Returns the kind of a shape, and how it is drawn.
-fn commands(shape: &Shape) -> (u64, Vec<u32>) {
+fn commands(shape: &GridShape) -> (u64, Vec<u32>) {
     let mut pen = Pen::default();
     let kind = match shape {
-        Shape::Points(points) => {
+        GridShape::Points(points) => {
             pen.command(MOVE_TO, points.len());
             points.iter().for_each(|&p| pen.go(p));
             POINT
         }
-        Shape::Lines(lines) => {
+        GridShape::Lines(lines) => {
             lines.iter().for_each(|line| pen.run(line));
             LINE
         }
-        Shape::Areas(shapes) => {
+        GridShape::Areas(shapes) => {
             for ring in shapes.rings() {
                 pen.run(ring);
                 pen.command(CLOSE, 1);
@@ -245,16 +245,19 @@ mod tests {
     #[test]
     fn geometries_are_those_of_the_specification() {
         // The examples of section 4.3.5.
-        assert_eq!(commands(&Shape::Points(vec![p(25, 17)])), (1, vec![9, 50, 34]));
-        assert_eq!(commands(&Shape::Points(vec![p(5, 7), p(3, 2)])), (1, vec![17, 10, 14, 3, 9]));
+        assert_eq!(commands(&GridShape::Points(vec![p(25, 17)])), (1, vec![9, 50, 34]));
+        assert_eq!(
+            commands(&GridShape::Points(vec![p(5, 7), p(3, 2)])),
+            (1, vec![17, 10, 14, 3, 9])
+        );
         let line = vec![p(2, 2), p(2, 10), p(10, 10)];
-        assert_eq!(commands(&Shape::Lines(vec![line.clone()])).1, [9, 4, 4, 18, 0, 16, 16, 0]);
-        let two = Shape::Lines(vec![line, vec![p(1, 1), p(3, 5)]]);
+        assert_eq!(commands(&GridShape::Lines(vec![line.clone()])).1, [9, 4, 4, 18, 0, 16, 16, 0]);
+        let two = GridShape::Lines(vec![line, vec![p(1, 1), p(3, 5)]]);
         let drawn = [9, 4, 4, 18, 0, 16, 16, 0, 9, 17, 17, 10, 4, 8];
         assert_eq!(commands(&two), (2, drawn.to_vec()));
         let mut areas = Shapes::new();
         areas.push_ring([p(3, 6), p(8, 12), p(20, 34)]);
-        assert_eq!(commands(&Shape::Areas(areas)), (3, vec![9, 6, 12, 18, 10, 12, 24, 44, 15]));
+        assert_eq!(commands(&GridShape::Areas(areas)), (3, vec![9, 6, 12, 18, 10, 12, 24, 44, 15]));
     }
 
     #[test]
@@ -267,7 +270,7 @@ mod tests {
         assert_eq!(tags, [(0, 0), (1, 1), (1, 0)]);
         let mut layer = Layer::new("l", 4096, &all);
         assert_eq!(encode(&[Layer::new("none", 4096, &all)]), b"");
-        layer.add(Some(7), &tags[1..2], &Shape::Points(vec![p(1, 1)]));
+        layer.add(Some(7), &tags[1..2], &GridShape::Points(vec![p(1, 1)]));
         let feature = b"\x08\x07\x12\x02\0\0\x18\x01\x22\x03\x09\x02\x02";
         let mut expected = b"\x1a\x21\x78\x02\x0a\x01l\x12\x0d".to_vec();
         expected.extend(feature);

@@ -6,8 +6,8 @@ use durer::paper::{
     TitleBlock, ViewKind, dashes, lay_out, lay_out_views,
 };
 use durer::scene::{Camera, Projection, UpAxis};
-use durer::target::drawing::{Anchor, Drawing, Label, Line, LineClass, Region, RegionKind};
-use durer::target::sheet::Mark;
+use durer::target::drawing::{Drawing, Line, LineClass, Region, RegionKind, TextAnchor, TextLabel};
+use durer::target::sheet::PaperMark;
 use durer::view::projection::NamedView;
 use durer::work::Work;
 use durer_formats::drawing::{
@@ -42,11 +42,11 @@ fn plate(w: f64, h: f64) -> Drawing {
             line(LineClass::Crease, 1, bend, false),
             line(LineClass::Border, 2, hole, true),
         ],
-        labels: vec![Label {
+        labels: vec![TextLabel {
             at: DVec2::ZERO,
             text: "Ø 10 < é & \"x\"".to_owned(),
             height: 3.0,
-            anchor: Anchor::Middle,
+            anchor: TextAnchor::Middle,
         }],
         ..Drawing::default()
     }
@@ -97,7 +97,7 @@ fn svg_has_millimetres_layers_and_all_strokes() {
         let paths: Vec<_> = group.children().filter(|n| n.has_tag_name("path")).collect();
         assert_eq!(paths.len(), layer.marks.len(), "{}", layer.name);
         for (path, mark) in paths.iter().zip(&layer.marks) {
-            if let Mark::Stroke { points, closed, .. } = mark {
+            if let PaperMark::Stroke { points, closed, .. } = mark {
                 let d = path.attribute("d").unwrap();
                 assert!(d.starts_with(&format!("M{}", points[0].x)), "{d}");
                 assert_eq!(d.ends_with('z'), *closed);
@@ -119,7 +119,7 @@ fn dashes_begin_and_end_with_a_whole_dash_and_meet_at_corners() {
     let layer = sheet.layers.iter().find(|l| l.name == "hidden-crease").unwrap();
     assert_eq!(layer.marks.len(), 2, "divided at its corner");
     for mark in &layer.marks {
-        let Mark::Stroke { points, closed, pen } = mark else { panic!("{mark:?}") };
+        let PaperMark::Stroke { points, closed, pen } = mark else { panic!("{mark:?}") };
         let nominal = &sheet.pens[*pen].dashes;
         let length = dashes::length(points, *closed);
         let fitted = dashes::fitted(nominal, length, *closed).unwrap();
@@ -292,7 +292,7 @@ fn on_sheet(angle: Angle, views: &[SheetView], scale: &str, page: &str) -> durer
 fn boxes(laid: &LaidOut, layer: &str) -> Vec<Rect> {
     let layer = laid.sheet.layers.iter().find(|l| l.name == layer).expect("a layer");
     let points = layer.marks.iter().filter_map(|m| match m {
-        Mark::Stroke { points, .. } => Rect::around(points.iter().copied()),
+        PaperMark::Stroke { points, .. } => Rect::around(points.iter().copied()),
         _ => None,
     });
     points.collect()
@@ -301,7 +301,7 @@ fn boxes(laid: &LaidOut, layer: &str) -> Vec<Rect> {
 fn texts(laid: &LaidOut, layer: &str) -> Vec<(String, DVec2)> {
     let layer = laid.sheet.layers.iter().find(|l| l.name == layer).expect("a layer");
     let texts = layer.marks.iter().filter_map(|m| match m {
-        Mark::Text { text, at, .. } => Some((text.clone(), *at)),
+        PaperMark::Text { text, at, .. } => Some((text.clone(), *at)),
         _ => None,
     });
     texts.collect()

@@ -2,17 +2,17 @@
 
 use durer::curve::pieces;
 use durer::math::DVec2;
-use durer::target::drawing::Anchor;
-use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
-use durer::target::{Arc, Curve, Piece};
+use durer::target::drawing::TextAnchor;
+use durer::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
+use durer::target::{Curve, CurvePiece, EllipticArc};
 use durer_formats::drawing::{MachineOptions, write_gcode, write_hpgl};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
     list.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
 }
 
-fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> Mark {
-    Mark::Stroke { points: points(list), closed, pen }
+fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> PaperMark {
+    PaperMark::Stroke { points: points(list), closed, pen }
 }
 
 /// Returns a sheet of 100 × 80 with three pens; the dashed one is as wide and dark as the first.
@@ -20,11 +20,11 @@ fn sheet() -> Sheet {
     let pen = |width, color, dashes| Pen { width, color, dashes };
     let layer = |name: &str, marks| SheetLayer { name: name.to_owned(), marks };
     let square = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0), (10.0, 30.0)];
-    let text = Mark::Text {
+    let text = PaperMark::Text {
         at: DVec2::new(50.0, 40.0),
         text: "A".to_owned(),
         height: 5.0,
-        anchor: Anchor::Start,
+        anchor: TextAnchor::Start,
         pen: 1,
     };
     Sheet {
@@ -151,7 +151,7 @@ fn gcode_read_back_is_the_sheet_pen_by_pen() {
     assert_eq!(pieces(black), pieces(&expected));
     assert!(black.contains(&points(&[(90.0, 10.0)])), "a dot is put down: {black:?}");
     let thin = points(&[(40.0, 75.0), (50.0, 75.0), (50.0, 71.0)]);
-    let letter = durer::paper::text_strokes(DVec2::new(50.0, 40.0), "A", 5.0, Anchor::Start);
+    let letter = durer::paper::text_strokes(DVec2::new(50.0, 40.0), "A", 5.0, TextAnchor::Start);
     let up = |chain: Vec<DVec2>| chain.into_iter().map(|p| DVec2::new(p.x, 80.0 - p.y)).collect();
     let expected: Vec<Vec<DVec2>> = letter.into_iter().map(up).chain([thin]).collect();
     assert_eq!(pieces(red), pieces(&expected));
@@ -215,21 +215,21 @@ fn hpgl_has_a_pen_for_each_width_and_colour_and_takes_it_once() {
 /// Returns a circle, an arc of nearly a full turn, an ellipse, and a line that continues in a cubic curve; y down.
 fn curves() -> Vec<Curve> {
     let p = DVec2::new;
-    let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };
-    let alone = |arc: Arc, closed| {
+    let arc = |center, axis, ratio, start, turn| EllipticArc { center, axis, ratio, start, turn };
+    let alone = |arc: EllipticArc, closed| {
         let (start, end) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
         let end = if closed { start } else { end };
-        Curve { start, pieces: vec![Piece::Arc(arc, end)], closed }
+        Curve { start, pieces: vec![CurvePiece::Arc(arc, end)], closed }
     };
     let whole = std::f64::consts::TAU;
-    let cubic = Piece::Cubic(p(70.0, 60.0), p(90.0, 30.0), p(95.0, 75.0));
+    let cubic = CurvePiece::Cubic(p(70.0, 60.0), p(90.0, 30.0), p(95.0, 75.0));
     vec![
         alone(arc(p(20.0, 20.0), p(12.345_67, 0.0), 1.0, 0.3, whole), true),
         alone(arc(p(50.0, 20.0), p(0.0, 8.1), 1.0, 1.0, -6.2), false),
         alone(arc(p(30.0, 55.0), p(20.0, 7.0), 0.4, 0.0, whole), true),
         Curve {
             start: p(60.0, 70.0),
-            pieces: vec![Piece::Line(p(65.0, 66.0)), cubic],
+            pieces: vec![CurvePiece::Line(p(65.0, 66.0)), cubic],
             closed: false,
         },
     ]
@@ -240,7 +240,7 @@ fn gcode_draws_curves_with_arcs() {
     let mut sheet = sheet();
     sheet.layers.truncate(1);
     sheet.layers[0].marks =
-        curves().into_iter().map(|curve| Mark::Curve { curve, pen: 0 }).collect();
+        curves().into_iter().map(|curve| PaperMark::Curve { curve, pen: 0 }).collect();
     let distance = |p: DVec2, chain: &[DVec2]| {
         let off = |w: &[DVec2]| {
             let t = ((p - w[0]).dot(w[1] - w[0]) / (w[1] - w[0]).length_squared()).clamp(0.0, 1.0);

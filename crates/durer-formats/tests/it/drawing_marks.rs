@@ -2,12 +2,12 @@
 
 use durer::math::{DAffine2, DVec2};
 use durer::target::dimension::{DimensionText, Measure};
-use durer::target::drawing::Anchor;
-use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::drawing::TextAnchor;
+use durer::target::gradient::{Gradient, GradientShape, Spread};
 use durer::target::sheet::{
-    ClipPath, Dimension, GradientArea, Mark, MarkGroup, Pen, Sheet, SheetLayer,
+    ClipPath, Dimension, GradientArea, MarkGroup, PaperMark, Pen, Sheet, SheetLayer,
 };
-use durer::target::{Arc, Curve, Piece};
+use durer::target::{Curve, CurvePiece, EllipticArc};
 use durer_formats::drawing::{
     self, DrawingFormat, DxfStrokes, FileOptions, write_dxf, write_hpgl, write_pdf, write_svg,
 };
@@ -17,16 +17,22 @@ fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
     list.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
 }
 
-fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> Mark {
-    Mark::Stroke { points: points(list), closed, pen }
+fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> PaperMark {
+    PaperMark::Stroke { points: points(list), closed, pen }
 }
 
-fn text(words: &str, anchor: Anchor) -> Mark {
-    Mark::Text { at: DVec2::new(50.0, 40.0), text: words.to_owned(), height: 5.0, anchor, pen: 0 }
+fn text(words: &str, anchor: TextAnchor) -> PaperMark {
+    PaperMark::Text {
+        at: DVec2::new(50.0, 40.0),
+        text: words.to_owned(),
+        height: 5.0,
+        anchor,
+        pen: 0,
+    }
 }
 
 /// Returns a sheet of 100 × 80 with a black, a dashed and a half transparent red pen.
-fn sheet(marks: Vec<Mark>) -> Sheet {
+fn sheet(marks: Vec<PaperMark>) -> Sheet {
     let pen = |width, color, dashes| Pen { width, color, dashes };
     Sheet {
         title: "Marks".to_owned(),
@@ -60,7 +66,7 @@ fn svg_paths_are_relative_and_dots_are_dots() {
         stroke(&[(1.0, 0.0), (2.0, 0.0), (2.0, 3.0), (4.0, 2.0), (4.5, 1.0)], true, 0),
         stroke(&[(7.0, 8.0), (7.0, 8.0)], false, 0),
         stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 2),
-        Mark::Fill {
+        PaperMark::Fill {
             rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
             color: [1, 2, 3, 255],
             even_odd: false,
@@ -96,9 +102,9 @@ fn dxf_entities_have_their_flags_weights_and_colours() {
     let marks = vec![
         stroke(&[(1.0, 2.0), (2.0, 2.0), (2.0, 3.0)], true, 0),
         stroke(&[(1.0, 2.0), (2.0, 2.0)], false, 2),
-        text("2^3", Anchor::Start),
-        text("end", Anchor::End),
-        Mark::Fill {
+        text("2^3", TextAnchor::Start),
+        text("end", TextAnchor::End),
+        PaperMark::Fill {
             rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
             color: [1, 2, 3, 255],
             even_odd: false,
@@ -141,7 +147,7 @@ fn content(pdf: &[u8]) -> String {
 #[test]
 fn words_of_a_pdf_stand_beneath_their_strokes() {
     let pdf = written(|out| {
-        write_pdf(out, &sheet(vec![text("A (b)", Anchor::End), text("Ωßш", Anchor::Start)]))
+        write_pdf(out, &sheet(vec![text("A (b)", TextAnchor::End), text("Ωßш", TextAnchor::Start)]))
     });
     let content = content(&pdf);
     // Invisible, once; Latin-1 letters by their own codes, others by the first free ones.
@@ -198,20 +204,20 @@ fn pdf_changes_its_state_only_where_it_must() {
 }
 
 /// Returns a circle, an open chain of a line, an arc and a cubic curve, and a whole ellipse.
-fn curves() -> Vec<Mark> {
+fn curves() -> Vec<PaperMark> {
     let at = DVec2::new;
-    let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };
-    let whole = |arc: Arc| {
+    let arc = |center, axis, ratio, start, turn| EllipticArc { center, axis, ratio, start, turn };
+    let whole = |arc: EllipticArc| {
         let start = arc.at(arc.start);
-        Curve { start, pieces: vec![Piece::Arc(arc, start)], closed: true }
+        Curve { start, pieces: vec![CurvePiece::Arc(arc, start)], closed: true }
     };
     let quarter = arc(at(30.0, 20.0), at(10.0, 0.0), 1.0, -FRAC_PI_2, FRAC_PI_2);
     let chain = Curve {
         start: at(10.0, 10.0),
         pieces: vec![
-            Piece::Line(at(30.0, 10.0)),
-            Piece::Arc(quarter, at(40.0, 20.0)),
-            Piece::Cubic(at(40.0, 25.0), at(45.0, 30.0), at(50.0, 30.0)),
+            CurvePiece::Line(at(30.0, 10.0)),
+            CurvePiece::Arc(quarter, at(40.0, 20.0)),
+            CurvePiece::Cubic(at(40.0, 25.0), at(45.0, 30.0), at(50.0, 30.0)),
         ],
         closed: false,
     };
@@ -220,7 +226,7 @@ fn curves() -> Vec<Mark> {
         chain,
         whole(arc(at(70.0, 50.0), at(0.0, 10.0), 0.5, 0.0, -TAU)),
     ];
-    curves.into_iter().map(|curve| Mark::Curve { curve, pen: 0 }).collect()
+    curves.into_iter().map(|curve| PaperMark::Curve { curve, pen: 0 }).collect()
 }
 
 #[test]
@@ -237,13 +243,13 @@ fn svg_has_circles_arcs_and_cubic_curves() {
         ]
     );
     // Dashes fit the length of the curve: 50.265 mm of 11 periods.
-    let dashed = Mark::Curve { curve: circle_of(&curves()), pen: 1 };
+    let dashed = PaperMark::Curve { curve: circle_of(&curves()), pen: 1 };
     let svg = utf8(written(|out| write_svg(out, &sheet(vec![dashed.clone()]))));
     assert!(svg.contains("<circle stroke-dasharray=\"3.0464 1.5232\" cx"), "{svg}");
 }
 
-fn circle_of(marks: &[Mark]) -> Curve {
-    let Mark::Curve { curve, .. } = &marks[0] else { panic!("{marks:?}") };
+fn circle_of(marks: &[PaperMark]) -> Curve {
+    let PaperMark::Curve { curve, .. } = &marks[0] else { panic!("{marks:?}") };
     curve.clone()
 }
 
@@ -293,17 +299,17 @@ fn hpgl_draws_curves_as_chords() {
 }
 
 /// Returns a vertical dimension of 30 mm with an arrow.
-fn dimension() -> Mark {
+fn dimension() -> PaperMark {
     let (a, b) = (DVec2::new(20.0, 60.0), DVec2::new(20.0, 30.0));
     let along = DVec2::new(0.0, -1.0);
     let arrow = points(&[(10.0, 60.0), (9.5, 57.0), (10.5, 57.0)]);
     let marks = vec![
         stroke(&[(10.0, 60.0), (10.0, 30.0)], false, 0),
-        Mark::Fill { rings: vec![arrow], color: [0, 0, 0, 255], even_odd: false },
+        PaperMark::Fill { rings: vec![arrow], color: [0, 0, 0, 255], even_odd: false },
     ];
     let at = DVec2::new(9.0, 45.0);
     let words = DimensionText { at, along, text: "2× 15".to_owned(), height: 3.5, pen: 0 };
-    Mark::Dimension(Box::new(Dimension {
+    PaperMark::Dimension(Box::new(Dimension {
         measure: Measure::Linear { ends: [a, b], line: DVec2::new(10.0, 60.0), along },
         value: 15.0,
         units_per_millimetre: 0.5,
@@ -352,14 +358,14 @@ fn dimensions_are_drawn_where_nothing_knows_them() {
 #[test]
 fn groups_have_clip_paths_and_opacity() {
     let corner = points(&[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]);
-    let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| Piece::Line(*p)).collect();
+    let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| CurvePiece::Line(*p)).collect();
     let rings = vec![Curve { start: corner[0], pieces, closed: true }];
-    let area = Mark::Fill { rings: vec![corner], color: [1, 2, 3, 255], even_odd: true };
+    let area = PaperMark::Fill { rings: vec![corner], color: [1, 2, 3, 255], even_odd: true };
     let inner = MarkGroup { marks: vec![area.clone()], clip: None, opacity: 0.25 };
     let clip = Some(ClipPath { rings, even_odd: true });
     let marks =
-        vec![stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 1), Mark::Group(Box::new(inner)), area];
-    let group = Mark::Group(Box::new(MarkGroup { marks, clip, opacity: 1.0 }));
+        vec![stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 1), PaperMark::Group(Box::new(inner)), area];
+    let group = PaperMark::Group(Box::new(MarkGroup { marks, clip, opacity: 1.0 }));
     let sheet = sheet(vec![group, stroke(&[(1.0, 0.0), (9.0, 0.0)], false, 1)]);
     let svg = utf8(written(|out| write_svg(out, &sheet)));
     let clip = "<clipPath id=\"_1\"><path clip-rule=\"evenodd\" d=\"M0 0h9l-9 9v-9z\"/></clipPath>";
@@ -407,17 +413,17 @@ fn dxf_entities_of_other_pens_than_the_layer_have_their_own_colour() {
 #[test]
 fn gradients_are_elements_and_shadings() {
     let corner = points(&[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]);
-    let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| Piece::Line(*p)).collect();
+    let pieces = corner[1..].iter().chain(&corner[..1]).map(|p| CurvePiece::Line(*p)).collect();
     let rings = vec![Curve { start: corner[0], pieces, closed: true }];
-    let area = |shape: Shape, spread: Spread, alpha: u8| {
+    let area = |shape: GradientShape, spread: Spread, alpha: u8| {
         let stops = vec![(0.0, [255, 0, 0, 255]), (0.5, [0, 0, 0, 255]), (1.0, [0, 0, 255, alpha])];
         let gradient = Gradient { shape, stops, spread, transform: DAffine2::IDENTITY };
         let rings = rings.clone();
-        Mark::Gradient(Box::new(GradientArea { rings, even_odd: false, gradient }))
+        PaperMark::Gradient(Box::new(GradientArea { rings, even_odd: false, gradient }))
     };
-    let line = Shape::Linear { start: DVec2::new(1.0, 2.0), end: DVec2::new(4.0, 2.0) };
+    let line = GradientShape::Linear { start: DVec2::new(1.0, 2.0), end: DVec2::new(4.0, 2.0) };
     let (center, focus) = (DVec2::new(3.0, 4.0), DVec2::new(3.0, 5.0));
-    let circle = Shape::Radial { center, radius: 2.0, focus, focus_radius: 0.0 };
+    let circle = GradientShape::Radial { center, radius: 2.0, focus, focus_radius: 0.0 };
     let marks = vec![
         area(line, Spread::Pad, 255),
         area(line, Spread::Pad, 255),
@@ -461,7 +467,7 @@ fn gradients_are_elements_and_shadings() {
     }
     let end = DVec2::new(1.0 + 1e-3, 2.0);
     let often = self::sheet(vec![area(
-        Shape::Linear { start: DVec2::new(1.0, 2.0), end },
+        GradientShape::Linear { start: DVec2::new(1.0, 2.0), end },
         Spread::Repeat,
         255,
     )]);

@@ -2,7 +2,7 @@
 
 use durer::math::{DVec2, DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{
-    AlphaMode, Filter, LightKind, MipFilter, Projection, ShadingModel, Topology, Wrap,
+    AlphaMode, LightKind, MipFilter, Projection, ShadingModel, TextureFilter, Topology, Wrap,
 };
 use durer_formats::{
     Error, Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, Result, gltf,
@@ -466,7 +466,7 @@ fn materials_are_read_whole() {
     let sampler = model.scene.textures[0].sampler;
     assert_eq!(
         (sampler.mag, sampler.min, sampler.mip),
-        (Filter::Nearest, Filter::Linear, MipFilter::Nearest)
+        (TextureFilter::Nearest, TextureFilter::Linear, MipFilter::Nearest)
     );
     assert_eq!((sampler.wrap_u, sampler.wrap_v), (Wrap::ClampToEdge, Wrap::MirroredRepeat));
     // The image is invalid and texture 1 has none: both are white, each with a warning.

@@ -10,7 +10,7 @@ use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::surface::{Cull, Filter, SurfaceInput, depth_sort};
+use durer::visibility::surface::{Cull, SurfaceInput, TriangleFilter, depth_sort};
 use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 use durer_formats::png::{Compression, write_color};
 
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
     let (scene, camera) = (scene::scene(), scene::camera());
     let view = View::new(camera, SIZE[0], SIZE[1])?;
-    let input = SurfaceInput::new(&scene, &view, Filter::new(Cull::None, 128))?;
+    let input = SurfaceInput::new(&scene, &view, TriangleFilter::new(Cull::None, 128))?;
     let write = |name: &str, picture: &Framebuffer| {
         let file = std::fs::File::create(format!("{folder}/{name}.png"))?;
         write_color(file, &picture.color, Compression::Small)

@@ -4,7 +4,7 @@ use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
 use durer::target::Framebuffer;
 use durer::trace::Recorder;
-use durer::visibility::surface::{Cull, Filter, SurfaceInput};
+use durer::visibility::surface::{Cull, SurfaceInput, TriangleFilter};
 use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 
 /// Returns a bumpy surface of 2 n² triangles that faces the eye.
@@ -33,7 +33,7 @@ pub fn steps(method: SurfaceMethod, scene: &Scene, side: u32) -> durer::Result<f
     let (eye, target, up) = (DVec3::new(0.9, -1.6, 2.0), DVec3::ZERO, DVec3::Y);
     let camera = Camera { eye, target, up, projection, near: 0.5, far: 6.0 };
     let view = durer::view::View::new(camera, side, side)?;
-    let input = SurfaceInput::new(scene, &view, Filter::new(Cull::None, 128))?;
+    let input = SurfaceInput::new(scene, &view, TriangleFilter::new(Cull::None, 128))?;
     let (mut counts, mut picture) = (Recorder::with_cap(1), Framebuffer::new(side, side));
     let lights = durer::shade::PreparedLights::of(scene, &camera);
     render_with(method, &input, &lights, &Options::default(), &mut picture, &mut counts)?;

@@ -1,11 +1,11 @@
 //! The body drawn, and the commands that all three pictures use.
 
-use durer::commands::{Command, Primitive, Vertex};
+use durer::commands::{Command, CornerVertex, Primitive};
 use durer::fragment::{Compare, FragmentState, Stencil, StencilFace, StencilOp};
 use durer::math::{DMat4, DVec3, Vec4};
 
 pub fn quad(corners: [DVec3; 4]) -> Command {
-    Command::Draw(Primitive::Polygon, corners.map(Vertex::from).into())
+    Command::Draw(Primitive::Polygon, corners.map(CornerVertex::from).into())
 }
 
 /// Returns a cube from −1 to 1, its faces counter-clockwise from outside, coloured by their light.

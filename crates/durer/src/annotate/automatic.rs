@@ -3,9 +3,9 @@
 use super::board::Board;
 use super::center;
 use super::draw::Said;
-use super::feature::{Feature, FeatureKind};
+use super::feature::{FeatureKind, RoundFeature};
 use super::place::{self, Target};
-use super::request::Side;
+use super::request::ViewSide;
 use super::seen::{Seen, Sight};
 use super::style;
 use crate::math::{DVec2, DVec3};
@@ -32,7 +32,7 @@ pub(super) fn said(sign: &str, value: f64, count: usize, view: &Seen, unit: f64)
 pub(super) fn sizes(
     board: &mut Board,
     views: &[Seen],
-    features: &[Feature],
+    features: &[RoundFeature],
     unit: f64,
     notes: &mut Vec<String>,
 ) {
@@ -58,16 +58,16 @@ pub(super) fn sizes(
 fn size(
     board: &mut Board,
     view: &Seen,
-    features: &[Feature],
+    features: &[RoundFeature],
     axis: DVec3,
     way: DVec2,
     unit: f64,
 ) -> bool {
     let way = super::draw::reading(way);
     let (side, then) = if way.x.abs() > way.y.abs() {
-        ([Side::Below, Side::Above], DVec2::Y)
+        ([ViewSide::Below, ViewSide::Above], DVec2::Y)
     } else {
-        ([Side::Left, Side::Right], -DVec2::X)
+        ([ViewSide::Left, ViewSide::Right], -DVec2::X)
     };
     let found = view.farthest(-way, then).zip(view.farthest(way, then));
     let Some((low, high)) = found else { return true };
@@ -96,16 +96,16 @@ fn size(
 pub(super) fn diameters(
     board: &mut Board,
     views: &[Seen],
-    features: &[&Feature],
+    features: &[&RoundFeature],
     unit: f64,
     notes: &mut Vec<String>,
 ) {
-    let text = |f: &Feature| style::length(2.0 * f.cylinder.radius, unit);
+    let text = |f: &RoundFeature| style::length(2.0 * f.cylinder.radius, unit);
     let kind = features.first().map_or(FeatureKind::Hole, |f| f.kind);
-    let mut left: Vec<&Feature> = features.to_vec();
+    let mut left: Vec<&RoundFeature> = features.to_vec();
     left.compact_sort_by(|a, b| a.cylinder.radius.total_cmp(&b.cylinder.radius));
     for alike in left.chunk_by(|a, b| text(a) == text(b)) {
-        let mut rest: Vec<&Feature> = alike.to_vec();
+        let mut rest: Vec<&RoundFeature> = alike.to_vec();
         for view in views {
             let Some((targets, value)) = circles(view, &mut rest) else { continue };
             let said = said("⌀", value, targets.len(), view, unit);
@@ -151,7 +151,7 @@ fn plural(name: &str) -> String {
 }
 
 /// Removes from the list the features that a view shows as circles; returns their distinct circles and their diameter.
-pub(super) fn circles(view: &Seen, rest: &mut Vec<&Feature>) -> Option<(Vec<Target>, f64)> {
+pub(super) fn circles(view: &Seen, rest: &mut Vec<&RoundFeature>) -> Option<(Vec<Target>, f64)> {
     let mut targets: Vec<Target> = Vec::new();
     let mut value = None;
     rest.retain(|f| {
@@ -175,7 +175,7 @@ pub(super) fn place_diameter(
     board: &mut Board,
     view: &Seen,
     targets: &[Target],
-    side: Option<Side>,
+    side: Option<ViewSide>,
     said: &Said,
 ) -> bool {
     let tried = &targets[..targets.len().min(TRIED)];

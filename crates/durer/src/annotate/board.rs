@@ -4,10 +4,10 @@ use super::quad::Quad;
 use super::style::{CENTER, HALO, Style, THIN};
 use crate::math::{DVec2, Rect};
 use crate::paper::pen_index;
-use crate::target::drawing::Anchor;
+use crate::target::drawing::TextAnchor;
 use crate::target::sheet::Dimension;
-use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
-use crate::target::{Arc, Curve, Piece};
+use crate::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
+use crate::target::{Curve, CurvePiece, EllipticArc};
 
 /// Distance that annotations keep from the frame or the border of the paper, millimetres.
 const INSIDE: f64 = 1.0;
@@ -28,7 +28,7 @@ pub(super) struct Board<'a> {
     /// Texts of annotations, with their halos.
     texts: Vec<Quad>,
     leaders: Vec<[DVec2; 2]>,
-    layers: [Vec<Mark>; 3],
+    layers: [Vec<PaperMark>; 3],
 }
 
 /// The layers of annotations, the lowest first.
@@ -45,7 +45,7 @@ const NAMES: [&str; 3] = ["center", "thread", "dimension"];
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
     /// Marks on the sheet.
-    pub mark: Vec<Mark>,
+    pub mark: Vec<PaperMark>,
     /// Areas of its text and dimension line.
     pub solid: Vec<Quad>,
     /// Its text.
@@ -97,7 +97,7 @@ impl<'a> Board<'a> {
         pen_index(self.sheet, Pen { width, color: self.style.color, dashes })
     }
 
-    pub fn add(&mut self, layer: Layer, mark: Mark) {
+    pub fn add(&mut self, layer: Layer, mark: PaperMark) {
         self.layers[layer as usize].push(mark);
     }
 
@@ -139,9 +139,9 @@ impl<'a> Board<'a> {
 }
 
 /// Returns the area of a text on the sheet.
-pub(super) fn text_quad(mark: &Mark) -> Option<Quad> {
+pub(super) fn text_quad(mark: &PaperMark) -> Option<Quad> {
     match mark {
-        Mark::Text { at, text, height, anchor, .. } => {
+        PaperMark::Text { at, text, height, anchor, .. } => {
             Some(Quad::of_text(text, (*at, DVec2::X), *height, *anchor, HALO))
         }
         _ => None,
@@ -149,9 +149,9 @@ pub(super) fn text_quad(mark: &Mark) -> Option<Quad> {
 }
 
 /// Returns the room that the circle around a number takes.
-fn circle_quad(mark: &Mark) -> Option<Quad> {
+fn circle_quad(mark: &PaperMark) -> Option<Quad> {
     match mark {
-        Mark::Stroke { points, closed: true, .. } => {
+        PaperMark::Stroke { points, closed: true, .. } => {
             Rect::around(points.iter().copied()).map(Quad::of_rect)
         }
         _ => None,
@@ -159,42 +159,51 @@ fn circle_quad(mark: &Mark) -> Option<Quad> {
 }
 
 /// Returns the room that a text, a line or an arrow takes.
-fn thin_quads(mark: &Mark) -> Vec<Quad> {
+fn thin_quads(mark: &PaperMark) -> Vec<Quad> {
     let along = |points: &[DVec2]| {
         points.windows(2).map(|w| Quad::of_segment(w[0], w[1], HALO)).collect::<Vec<_>>()
     };
     match mark {
-        Mark::Stroke { points, .. } => along(points),
-        Mark::Fill { rings, .. } => rings.iter().flat_map(|ring| along(ring)).collect(),
+        PaperMark::Stroke { points, .. } => along(points),
+        PaperMark::Fill { rings, .. } => rings.iter().flat_map(|ring| along(ring)).collect(),
         mark => text_quad(mark).into_iter().collect(),
     }
 }
 
 /// Returns the rectangle around strokes and texts.
-fn bounds(marks: &[Mark]) -> Option<Rect> {
+fn bounds(marks: &[PaperMark]) -> Option<Rect> {
     let points = marks.iter().flat_map(|m| match m {
-        Mark::Stroke { points, .. } => points.clone(),
+        PaperMark::Stroke { points, .. } => points.clone(),
         mark => text_quad(mark).map_or_else(Vec::new, |q| q.0.to_vec()),
     });
     Rect::around(points)
 }
 
 /// Returns an arc as a mark: around a centre, from an angle on, radians, counter-clockwise as seen.
-pub(super) fn arc_mark(center: DVec2, radius: f64, start: f64, turn: f64, pen: usize) -> Mark {
+pub(super) fn arc_mark(center: DVec2, radius: f64, start: f64, turn: f64, pen: usize) -> PaperMark {
     // On the sheet y runs down.
-    let arc = Arc { center, axis: DVec2::new(radius, 0.0), ratio: 1.0, start: -start, turn: -turn };
+    let arc = EllipticArc {
+        center,
+        axis: DVec2::new(radius, 0.0),
+        ratio: 1.0,
+        start: -start,
+        turn: -turn,
+    };
     let closed = arc.is_whole();
     let first = arc.at(-start);
     let last = if closed { first } else { arc.at(-start - turn) };
-    Mark::Curve { curve: Curve { start: first, pieces: vec![Piece::Arc(arc, last)], closed }, pen }
+    PaperMark::Curve {
+        curve: Curve { start: first, pieces: vec![CurvePiece::Arc(arc, last)], closed },
+        pen,
+    }
 }
 
 /// Returns a dimension as a mark.
-pub(super) fn mark(dimension: Dimension) -> Mark {
-    Mark::Dimension(Box::new(dimension))
+pub(super) fn mark(dimension: Dimension) -> PaperMark {
+    PaperMark::Dimension(Box::new(dimension))
 }
 
 /// Returns a text to be laid horizontally.
-pub(super) fn text_mark(at: DVec2, text: String, height: f64, pen: usize) -> Mark {
-    Mark::Text { at, text, height, anchor: Anchor::Middle, pen }
+pub(super) fn text_mark(at: DVec2, text: String, height: f64, pen: usize) -> PaperMark {
+    PaperMark::Text { at, text, height, anchor: TextAnchor::Middle, pen }
 }

@@ -2,13 +2,13 @@
 
 use super::board::{Board, Layer, arc_mark};
 use super::draw::reading;
-use super::feature::{Feature, FeatureKind};
+use super::feature::{FeatureKind, RoundFeature};
 use super::quad::Quad;
 use super::seen::{Seen, Sight};
 use super::style::BEYOND;
 use crate::math::DVec2;
 use crate::sorting::CompactSort;
-use crate::target::sheet::Mark;
+use crate::target::sheet::PaperMark;
 use std::f64::consts::TAU;
 
 /// Length of lines, in millimetres, below which a cross is solid: there is no room for three dashes with dots between
@@ -31,7 +31,7 @@ struct Circle {
 
 /// Draws the centre marks and lines of one view; if it is the sheet's only one (`alone`), axes seen obliquely are drawn
 /// too.
-pub(super) fn put(board: &mut Board, view: &Seen, features: &[Feature], alone: bool) {
+pub(super) fn put(board: &mut Board, view: &Seen, features: &[RoundFeature], alone: bool) {
     let round = || features.iter().filter(|f| f.kind != FeatureKind::Fillet);
     let mut circles = Vec::new();
     let mut axes = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn put(board: &mut Board, view: &Seen, features: &[Feature], alone: b
     let (pen, thin) = (board.center(), board.thin());
     let (marks, rings) = center_marks(&circles);
     let mut add = |[a, b]: [DVec2; 2], pen: usize| {
-        board.add(Layer::Center, Mark::Stroke { points: vec![a, b], closed: false, pen });
+        board.add(Layer::Center, PaperMark::Stroke { points: vec![a, b], closed: false, pen });
     };
     // Details show a part of the model.
     let around = Quad::of_rect(view.bounds()).wider(BEYOND + SAME);

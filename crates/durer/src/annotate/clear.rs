@@ -4,8 +4,8 @@ use super::quad::Quad;
 use crate::curve::pieces;
 use crate::math::DVec2;
 use crate::sorting::CompactSort;
-use crate::target::sheet::{Mark, Sheet};
-use crate::target::{Arc, Curve, Piece};
+use crate::target::sheet::{PaperMark, Sheet};
+use crate::target::{Curve, CurvePiece, EllipticArc};
 
 /// Shortest rest of a line between two texts, in millimetres: a shorter one looks like dirt.
 const SHORTEST: f64 = 0.3;
@@ -26,26 +26,26 @@ fn is_whole(layer: &str) -> bool {
     matches!(layer, "frame" | "title-block" | "regions")
 }
 
-fn cut_marks(marks: &mut Vec<Mark>, quads: &[Quad]) {
+fn cut_marks(marks: &mut Vec<PaperMark>, quads: &[Quad]) {
     let mut kept = Vec::with_capacity(marks.len());
     for mut mark in std::mem::take(marks) {
-        if let Mark::Dimension(dimension) = &mut mark {
+        if let PaperMark::Dimension(dimension) = &mut mark {
             cut_marks(&mut dimension.marks, quads);
         }
         match mark {
-            Mark::Stroke { points, closed, pen } => match outside(&points, closed, quads) {
-                Some(parts) => kept.extend(parts.into_iter().map(|points| Mark::Stroke {
+            PaperMark::Stroke { points, closed, pen } => match outside(&points, closed, quads) {
+                Some(parts) => kept.extend(parts.into_iter().map(|points| PaperMark::Stroke {
                     points,
                     closed: false,
                     pen,
                 })),
-                None => kept.push(Mark::Stroke { points, closed, pen }),
+                None => kept.push(PaperMark::Stroke { points, closed, pen }),
             },
-            Mark::Curve { curve, pen } => match outside_of_curve(&curve, quads) {
+            PaperMark::Curve { curve, pen } => match outside_of_curve(&curve, quads) {
                 Some(parts) => {
-                    kept.extend(parts.into_iter().map(|curve| Mark::Curve { curve, pen }))
+                    kept.extend(parts.into_iter().map(|curve| PaperMark::Curve { curve, pen }))
                 }
-                None => kept.push(Mark::Curve { curve, pen }),
+                None => kept.push(PaperMark::Curve { curve, pen }),
             },
             mark => kept.push(mark),
         }
@@ -84,9 +84,9 @@ fn outside(points: &[DVec2], closed: bool, quads: &[Quad]) -> Option<Vec<Vec<DVe
 fn outside_of_curve(curve: &Curve, quads: &[Quad]) -> Option<Vec<Curve>> {
     outside(&pieces::points(curve, NEAR), curve.closed, quads)?;
     let parts = curve.iter().flat_map(|(start, piece)| match *piece {
-        Piece::Arc(arc, end) => arcs(&arc, [start, end], quads),
-        Piece::Line(end) => polylines(&[start, end], quads),
-        Piece::Cubic(..) => {
+        CurvePiece::Arc(arc, end) => arcs(&arc, [start, end], quads),
+        CurvePiece::Line(end) => polylines(&[start, end], quads),
+        CurvePiece::Cubic(..) => {
             let alone = Curve { start, pieces: vec![*piece], closed: false };
             polylines(&pieces::points(&alone, NEAR), quads)
         }
@@ -99,14 +99,14 @@ fn polylines(points: &[DVec2], quads: &[Quad]) -> Vec<Curve> {
     let parts = outside(points, false, quads).unwrap_or_else(|| vec![points.to_vec()]);
     let curve = |part: Vec<DVec2>| {
         let (start, rest) = part.split_first()?;
-        let pieces = rest.iter().map(|p| Piece::Line(*p)).collect();
+        let pieces = rest.iter().map(|p| CurvePiece::Line(*p)).collect();
         Some(Curve { start: *start, pieces, closed: false })
     };
     parts.into_iter().filter_map(curve).collect()
 }
 
 /// Returns the parts of an arc between its ends outside of all quads: arcs again.
-fn arcs(arc: &Arc, [start, end]: [DVec2; 2], quads: &[Quad]) -> Vec<Curve> {
+fn arcs(arc: &EllipticArc, [start, end]: [DVec2; 2], quads: &[Quad]) -> Vec<Curve> {
     let count = (arc.turn.abs() / CHORD).ceil().max(1.0);
     let at = |t: f64| match t {
         0.0 => start,
@@ -126,7 +126,7 @@ fn arcs(arc: &Arc, [start, end]: [DVec2; 2], quads: &[Quad]) -> Vec<Curve> {
     }
     let part = |(from, to): (f64, f64)| {
         let (start, turn) = (arc.start + arc.turn * from, arc.turn * (to - from));
-        let piece = Piece::Arc(Arc { start, turn, ..*arc }, at(to));
+        let piece = CurvePiece::Arc(EllipticArc { start, turn, ..*arc }, at(to));
         Curve { start: at(from), pieces: vec![piece], closed: false }
     };
     let long = |s: &(f64, f64)| (s.1 - s.0) * arc.turn.abs() * arc.radii().y >= SHORTEST;
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_circle_across_a_text_stays_round() {
-        let arc = Arc {
+        let arc = EllipticArc {
             center: DVec2::ZERO,
             axis: DVec2::new(10.0, 0.0),
             ratio: 1.0,
@@ -175,7 +175,7 @@ mod tests {
             turn: std::f64::consts::TAU,
         };
         let start = DVec2::new(10.0, 0.0);
-        let circle = Curve { start, pieces: vec![Piece::Arc(arc, start)], closed: true };
+        let circle = Curve { start, pieces: vec![CurvePiece::Arc(arc, start)], closed: true };
         let p = DVec2::new;
         let quad = Quad([p(-12.0, -2.0), p(-8.0, -2.0), p(-8.0, 2.0), p(-12.0, 2.0)]);
         let parts = outside_of_curve(&circle, &[quad]).expect("cut");

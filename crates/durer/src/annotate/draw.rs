@@ -8,7 +8,7 @@ use crate::math::DVec2;
 use crate::sorting::CompactSort;
 use crate::target::dimension::{DimensionText, Measure};
 use crate::target::sheet::Dimension;
-use crate::target::sheet::Mark;
+use crate::target::sheet::PaperMark;
 
 /// Text of a dimension.
 #[derive(Debug, Clone)]
@@ -44,17 +44,17 @@ fn above(along: DVec2) -> DVec2 {
 }
 
 /// Returns a filled arrow head; `body` is the direction from its tip into it.
-fn arrow(tip: DVec2, body: DVec2, style: &Style) -> Mark {
+fn arrow(tip: DVec2, body: DVec2, style: &Style) -> PaperMark {
     let (back, side) = (tip + body * style.arrow, body.perp() * (style.arrow / 6.0));
-    Mark::Fill {
+    PaperMark::Fill {
         rings: vec![vec![tip, back + side, back - side]],
         color: style.color,
         even_odd: false,
     }
 }
 
-fn stroke(points: Vec<DVec2>, pen: usize) -> Mark {
-    Mark::Stroke { points, closed: false, pen }
+fn stroke(points: Vec<DVec2>, pen: usize) -> PaperMark {
+    PaperMark::Stroke { points, closed: false, pen }
 }
 
 impl Board<'_> {
@@ -191,7 +191,7 @@ impl Board<'_> {
         &self,
         measure: Measure,
         said: &Said,
-        marks: Vec<Mark>,
+        marks: Vec<PaperMark>,
         text: DimensionText,
         mut solid: Vec<Quad>,
         leader: Option<[DVec2; 2]>,

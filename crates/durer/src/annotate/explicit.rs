@@ -3,9 +3,9 @@
 use super::automatic::{no_room, place_diameter, said};
 use super::board::Board;
 use super::draw::Said;
-use super::feature::{self, Feature};
+use super::feature::{self, RoundFeature};
 use super::place::{self, Target};
-use super::request::{Along, Place, Request, What};
+use super::request::{Along, FeaturePlace, Request, What};
 use super::seen::{Seen, Sight};
 use super::style;
 use crate::math::{DVec2, DVec3};
@@ -15,7 +15,7 @@ use crate::{Error, Result};
 
 /// Model that requests refer to.
 pub(super) struct Model<'a> {
-    pub features: &'a [Feature],
+    pub features: &'a [RoundFeature],
     /// Millimetres per unit.
     pub unit: f64,
 }
@@ -78,10 +78,10 @@ fn views_of<'a, 'b>(views: &'a [Seen<'b>], request: &Request) -> Result<Vec<&'a 
 
 impl Model<'_> {
     /// Returns a point of a place, and the direction of its axis if it has one.
-    fn place(&self, place: &Place) -> Result<(DVec3, Option<DVec3>)> {
+    fn place(&self, place: &FeaturePlace) -> Result<(DVec3, Option<DVec3>)> {
         match place {
-            Place::Point(p) => Ok((*p, None)),
-            Place::Feature(name) => {
+            FeaturePlace::Point(p) => Ok((*p, None)),
+            FeaturePlace::Feature(name) => {
                 let feature = feature::one(self.features, name)?;
                 Ok((feature.middle(), Some(feature.cylinder.axis())))
             }
@@ -89,7 +89,12 @@ impl Model<'_> {
     }
 
     /// Returns two points, the direction from one to the other, and their distance along it.
-    fn distance(&self, from: &Place, to: &Place, along: Along) -> Result<([DVec3; 2], DVec3, f64)> {
+    fn distance(
+        &self,
+        from: &FeaturePlace,
+        to: &FeaturePlace,
+        along: Along,
+    ) -> Result<([DVec3; 2], DVec3, f64)> {
         let ((p, a), (q, b)) = (self.place(from)?, self.place(to)?);
         let mut way = q - p;
         if let (Some(a), Some(b)) = (a, b)

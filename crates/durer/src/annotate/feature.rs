@@ -45,7 +45,7 @@ impl FeatureKind {
 
 /// A round part with its name.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Feature {
+pub struct RoundFeature {
     /// `hole 1`, …: each kind is counted on its own, from 1, in the order of the file.
     pub name: String,
     /// The name of its object; may be empty.
@@ -56,7 +56,7 @@ pub struct Feature {
     pub cylinder: Cylinder,
 }
 
-impl Feature {
+impl RoundFeature {
     /// Returns the middle of its axis.
     pub(crate) fn middle(&self) -> DVec3 {
         (self.cylinder.ends[0] + self.cylinder.ends[1]) * 0.5
@@ -64,7 +64,7 @@ impl Feature {
 }
 
 /// Finds the round parts of a scene by its faces, and names them. O(n).
-pub fn features(scene: &Scene, faces: &Faces) -> Vec<Feature> {
+pub fn features(scene: &Scene, faces: &Faces) -> Vec<RoundFeature> {
     let mut counts = [0usize; 3];
     let named = |cylinder: Cylinder| {
         let kind = FeatureKind::of(&cylinder);
@@ -72,7 +72,7 @@ pub fn features(scene: &Scene, faces: &Faces) -> Vec<Feature> {
         *count += 1;
         let name = format!("{} {count}", kind.name());
         let object = object(scene, faces, cylinder.item).to_owned();
-        Feature { name, object, kind, cylinder }
+        RoundFeature { name, object, kind, cylinder }
     };
     cylinders(faces).into_iter().map(named).collect()
 }
@@ -95,10 +95,11 @@ fn object<'a>(scene: &'a Scene, faces: &Faces, item: u32) -> &'a str {
 ///
 /// # Errors
 /// [`Error::Parameter`], with some of the existing names.
-pub(super) fn named<'a>(features: &'a [Feature], name: &str) -> Result<Vec<&'a Feature>> {
+pub(super) fn named<'a>(features: &'a [RoundFeature], name: &str) -> Result<Vec<&'a RoundFeature>> {
     let name = name.trim();
     let own = features.iter().filter(|f| f.name == name);
-    let found: Vec<&Feature> = own.chain(features.iter().filter(|f| f.object == name)).collect();
+    let found: Vec<&RoundFeature> =
+        own.chain(features.iter().filter(|f| f.object == name)).collect();
     if found.is_empty() {
         return Err(unknown(features, name));
     }
@@ -109,7 +110,7 @@ pub(super) fn named<'a>(features: &'a [Feature], name: &str) -> Result<Vec<&'a F
 ///
 /// # Errors
 /// [`Error::Parameter`] if there is none, or several.
-pub(super) fn one<'a>(features: &'a [Feature], name: &str) -> Result<&'a Feature> {
+pub(super) fn one<'a>(features: &'a [RoundFeature], name: &str) -> Result<&'a RoundFeature> {
     match named(features, name)?[..] {
         [only] => Ok(only),
         ref several => {
@@ -120,7 +121,7 @@ pub(super) fn one<'a>(features: &'a [Feature], name: &str) -> Result<&'a Feature
     }
 }
 
-fn unknown(features: &[Feature], name: &str) -> Error {
+fn unknown(features: &[RoundFeature], name: &str) -> Error {
     let mut names: Vec<&str> = features.iter().take(TOLD).map(|f| f.name.as_str()).collect();
     let mut objects: Vec<&str> = features.iter().map(|f| f.object.as_str()).collect();
     objects.retain(|o| !o.is_empty());

@@ -4,7 +4,7 @@ use super::board::text_quad;
 use super::quad::Quad;
 use crate::curve::pieces;
 use crate::math::{DVec2, Rect};
-use crate::target::sheet::{Mark, Sheet, SheetLayer};
+use crate::target::sheet::{PaperMark, Sheet, SheetLayer};
 use std::f64::consts::FRAC_PI_4;
 
 /// Layers whose letters are moved, and whether those stay off the views.
@@ -39,7 +39,7 @@ pub(super) fn make_room(sheet: &mut Sheet, views: &[Rect], page: &Rect) -> Vec<Q
             let views = if outside { views } else { &[] };
             let way = way(sheet, (layer, index), quad, views, page);
             places.push(moved(quad, way));
-            if let Mark::Text { at, .. } = &mut sheet.layers[layer].marks[index] {
+            if let PaperMark::Text { at, .. } = &mut sheet.layers[layer].marks[index] {
                 *at += way;
             }
         }
@@ -96,15 +96,17 @@ impl Near {
         near
     }
 
-    fn add(&mut self, mark: &Mark) {
+    fn add(&mut self, mark: &PaperMark) {
         match mark {
-            Mark::Stroke { points, closed, .. } => self.chain(points, *closed),
-            Mark::Curve { curve, .. } => self.chain(&pieces::points(curve, NEAR), curve.closed),
-            Mark::Fill { rings, .. } => rings.iter().for_each(|ring| self.chain(ring, true)),
-            Mark::Area { .. } | Mark::Gradient(_) => {}
-            Mark::Group(group) => group.marks.iter().for_each(|mark| self.add(mark)),
-            Mark::Text { .. } => self.quads.extend(text_quad(mark)),
-            Mark::Dimension(dimension) => {
+            PaperMark::Stroke { points, closed, .. } => self.chain(points, *closed),
+            PaperMark::Curve { curve, .. } => {
+                self.chain(&pieces::points(curve, NEAR), curve.closed)
+            }
+            PaperMark::Fill { rings, .. } => rings.iter().for_each(|ring| self.chain(ring, true)),
+            PaperMark::Area { .. } | PaperMark::Gradient(_) => {}
+            PaperMark::Group(group) => group.marks.iter().for_each(|mark| self.add(mark)),
+            PaperMark::Text { .. } => self.quads.extend(text_quad(mark)),
+            PaperMark::Dimension(dimension) => {
                 dimension.marks.iter().for_each(|mark| self.add(mark));
                 self.quads.push(Quad::of_dimension(&dimension.text));
             }
@@ -127,20 +129,20 @@ impl Near {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::drawing::Anchor;
+    use crate::target::drawing::TextAnchor;
 
-    fn stroke(points: [(f64, f64); 2]) -> Mark {
+    fn stroke(points: [(f64, f64); 2]) -> PaperMark {
         let points = points.map(|(x, y)| DVec2::new(x, y)).to_vec();
-        Mark::Stroke { points, closed: false, pen: 0 }
+        PaperMark::Stroke { points, closed: false, pen: 0 }
     }
 
     #[test]
     fn letters_go_where_nothing_is() {
-        let letter = |x: f64| Mark::Text {
+        let letter = |x: f64| PaperMark::Text {
             at: DVec2::new(x, 50.0),
             text: "A".to_owned(),
             height: 5.0,
-            anchor: Anchor::Middle,
+            anchor: TextAnchor::Middle,
             pen: 0,
         };
         let layer = |name: &str, marks| SheetLayer { name: name.to_owned(), marks };
@@ -162,7 +164,7 @@ mod tests {
         let x: Vec<f64> = sheet.layers[1]
             .marks
             .iter()
-            .map(|m| if let Mark::Text { at, .. } = m { at.x } else { f64::NAN })
+            .map(|m| if let PaperMark::Text { at, .. } = m { at.x } else { f64::NAN })
             .collect();
         // To the right, off the view; to the left, off the line at 84; and one that stays.
         assert!(x[0] > 23.0 && x[1] < 78.0 && x[2] == 50.0, "{x:?}");

@@ -19,8 +19,8 @@ mod seen;
 mod style;
 mod thread;
 
-pub use feature::{Feature, FeatureKind, features};
-pub use request::{Along, Annotations, Place, Request, Side, Thread, ThreadSize, What};
+pub use feature::{FeatureKind, RoundFeature, features};
+pub use request::{Along, Annotations, FeaturePlace, Request, Thread, ThreadSize, ViewSide, What};
 
 use crate::Result;
 use crate::math::Rect;
@@ -38,7 +38,7 @@ pub struct Shown<'a> {
     /// Drawings of the views, in the same order.
     pub drawings: &'a [&'a Drawing],
     /// The round parts of the model.
-    pub features: &'a [Feature],
+    pub features: &'a [RoundFeature],
     /// Millimetres per unit of the model.
     pub unit: f64,
     /// True if hidden lines are drawn.
@@ -85,7 +85,7 @@ pub fn annotate(sheet: &mut Sheet, wanted: &Annotations, shown: &Shown) -> Resul
     let sized = thread::put(board_ref, &views, features, &wanted.threads, shown.unit, &mut notes)?;
     for (kind, requested) in [(FeatureKind::Hole, wanted.holes), (FeatureKind::Boss, wanted.bosses)]
     {
-        let chosen: Vec<&Feature> = features
+        let chosen: Vec<&RoundFeature> = features
             .iter()
             .filter(|f| requested && f.kind == kind && !sized.iter().any(|s| s.name == f.name))
             .collect();

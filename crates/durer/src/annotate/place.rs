@@ -2,7 +2,7 @@
 
 use super::board::{Board, Draft};
 use super::draw::{Linear, Said, reading};
-use super::request::Side;
+use super::request::ViewSide;
 use super::seen::Seen;
 use super::style::{FIRST, STEP};
 use crate::math::{DVec2, Rect};
@@ -40,7 +40,7 @@ pub(super) fn linear(
     view: &Seen,
     ends: [DVec2; 2],
     along: DVec2,
-    sides: &[Side],
+    sides: &[ViewSide],
     said: &Said,
 ) -> bool {
     // Programs that measure again do not know about breaks.
@@ -61,18 +61,18 @@ pub(super) fn linear(
 }
 
 /// Returns a point of a dimension line at a distance from a view, or, for an oblique one, from its ends.
-fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: Side, distance: f64) -> DVec2 {
+fn lane_at(bounds: Rect, ends: [DVec2; 2], along: DVec2, side: ViewSide, distance: f64) -> DVec2 {
     let (min, max) = (bounds.min(), bounds.max());
     let straight = along.x.abs() < 1e-3 || along.y.abs() < 1e-3;
     match side {
-        Side::Above if straight => DVec2::new(ends[0].x, min.y - distance),
-        Side::Below if straight => DVec2::new(ends[0].x, max.y + distance),
-        Side::Left if straight => DVec2::new(min.x - distance, ends[0].y),
-        Side::Right if straight => DVec2::new(max.x + distance, ends[0].y),
+        ViewSide::Above if straight => DVec2::new(ends[0].x, min.y - distance),
+        ViewSide::Below if straight => DVec2::new(ends[0].x, max.y + distance),
+        ViewSide::Left if straight => DVec2::new(min.x - distance, ends[0].y),
+        ViewSide::Right if straight => DVec2::new(max.x + distance, ends[0].y),
         _ => {
             let along = reading(along);
             let up = DVec2::new(along.y, -along.x);
-            let sign = if matches!(side, Side::Above | Side::Left) { 1.0 } else { -1.0 };
+            let sign = if matches!(side, ViewSide::Above | ViewSide::Left) { 1.0 } else { -1.0 };
             let (p, q) = (ends[0].dot(up), ends[1].dot(up));
             let outer = if sign > 0.0 { p.max(q) } else { p.min(q) };
             ends[0] + up * (outer - p + sign * distance)
@@ -85,17 +85,17 @@ pub(super) fn sides(
     view: &Seen,
     ends: [DVec2; 2],
     along: DVec2,
-    wanted: Option<Side>,
-) -> Vec<Side> {
+    wanted: Option<ViewSide>,
+) -> Vec<ViewSide> {
     if let Some(side) = wanted {
         return vec![side];
     }
     let bounds = view.bounds();
     let off = (ends[0] + ends[1]) * 0.5 - (bounds.min() + bounds.max()) * 0.5;
     let (first, second, swapped) = if along.x.abs() >= along.y.abs() {
-        (Side::Below, Side::Above, off.y < -1e-6)
+        (ViewSide::Below, ViewSide::Above, off.y < -1e-6)
     } else {
-        (Side::Left, Side::Right, off.x > 1e-6)
+        (ViewSide::Left, ViewSide::Right, off.x > 1e-6)
     };
     if swapped { vec![second, first] } else { vec![first, second] }
 }
@@ -106,7 +106,7 @@ pub(super) fn leader(
     board: &mut Board,
     view: &Seen,
     targets: &[Target],
-    side: Option<Side>,
+    side: Option<ViewSide>,
     said: &Said,
     measure: impl Fn(&Target, DVec2) -> Option<Measure>,
 ) -> bool {
@@ -145,13 +145,13 @@ pub(super) fn leader(
     found
 }
 
-fn is_on(side: Option<Side>, way: DVec2) -> bool {
+fn is_on(side: Option<ViewSide>, way: DVec2) -> bool {
     match side {
         None => true,
-        Some(Side::Above) => way.y < -0.5,
-        Some(Side::Below) => way.y > 0.5,
-        Some(Side::Left) => way.x < -0.25,
-        Some(Side::Right) => way.x > 0.25,
+        Some(ViewSide::Above) => way.y < -0.5,
+        Some(ViewSide::Below) => way.y > 0.5,
+        Some(ViewSide::Left) => way.x < -0.25,
+        Some(ViewSide::Right) => way.x > 0.25,
     }
 }
 

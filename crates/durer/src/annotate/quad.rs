@@ -4,7 +4,7 @@ use super::style::HALO;
 use crate::math::{DVec2, Rect};
 use crate::paper::text_strokes;
 use crate::target::dimension::DimensionText;
-use crate::target::drawing::Anchor;
+use crate::target::drawing::TextAnchor;
 
 /// A convex quadrilateral in the sheet's millimetres; may be as flat as a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ impl Quad {
         text: &str,
         (at, along): (DVec2, DVec2),
         height: f64,
-        anchor: Anchor,
+        anchor: TextAnchor,
         space: f64,
     ) -> Self {
         let strokes = text_strokes(DVec2::ZERO, text, height, anchor);
@@ -53,7 +53,7 @@ impl Quad {
 
     /// Returns the room that the text of a dimension takes, with space around it.
     pub fn of_dimension(text: &DimensionText) -> Self {
-        Self::of_text(&text.text, (text.at, text.along), text.height, Anchor::Middle, HALO)
+        Self::of_text(&text.text, (text.at, text.along), text.height, TextAnchor::Middle, HALO)
     }
 
     fn sides(&self) -> impl Iterator<Item = [DVec2; 2]> + '_ {

@@ -34,7 +34,7 @@ pub struct Request {
     /// The name of its view; `None` for the first that shows it.
     pub view: Option<String>,
     /// The side of the view; `None` for the first one with room.
-    pub side: Option<Side>,
+    pub side: Option<ViewSide>,
     /// Text, with `<>` for the measured value; `None` for that value alone.
     pub text: Option<String>,
 }
@@ -45,9 +45,9 @@ pub enum What {
     /// The distance of two places.
     Linear {
         /// One end of the distance.
-        from: Place,
+        from: FeaturePlace,
         /// The other end.
-        to: Place,
+        to: FeaturePlace,
         /// Direction of the distance.
         along: Along,
     },
@@ -58,19 +58,19 @@ pub enum What {
     /// The angle at a place between two others.
     Angle {
         /// The vertex of the angle.
-        vertex: Place,
+        vertex: FeaturePlace,
         /// A place on the first side.
-        from: Place,
+        from: FeaturePlace,
         /// A place on the second side.
-        to: Place,
+        to: FeaturePlace,
     },
     /// Words for a place.
-    Note(Place),
+    Note(FeaturePlace),
 }
 
 /// Position of a feature or point.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Place {
+pub enum FeaturePlace {
     /// A point of the world.
     Point(DVec3),
     /// The axis of a feature by its name.
@@ -105,7 +105,7 @@ impl Along {
 
 /// A side of a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum ViewSide {
     /// Over it.
     Above,
     /// Under it.

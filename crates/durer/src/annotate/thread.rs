@@ -3,14 +3,14 @@
 use super::automatic::{circles, no_room, place_diameter};
 use super::board::{Board, Layer, arc_mark};
 use super::draw::Said;
-use super::feature::{self, Feature, FeatureKind};
+use super::feature::{self, FeatureKind, RoundFeature};
 use super::request::{Thread, ThreadSize};
 use super::seen::{Seen, Sight};
 use crate::Result;
 use crate::math::DVec2;
 use crate::paper::Pens;
 use crate::target::drawing::LineClass;
-use crate::target::sheet::Mark;
+use crate::target::sheet::PaperMark;
 
 /// The core of a screw whose pitch is not known, as a part of its diameter: as drawings show it.
 const CORE: f64 = 0.85;
@@ -27,15 +27,15 @@ const TURN: f64 = 270.0;
 pub(super) fn put<'a>(
     board: &mut Board,
     views: &[Seen],
-    features: &'a [Feature],
+    features: &'a [RoundFeature],
     threads: &[Thread],
     unit: f64,
     notes: &mut Vec<String>,
-) -> Result<Vec<&'a Feature>> {
+) -> Result<Vec<&'a RoundFeature>> {
     let mut sized = Vec::new();
     for thread in threads {
         let found = feature::named(features, &thread.name)?;
-        let mut threaded: Vec<&'a Feature> = Vec::new();
+        let mut threaded: Vec<&'a RoundFeature> = Vec::new();
         for feature in found.into_iter().filter(|f| f.kind != FeatureKind::Fillet) {
             match other_radius(feature, thread.size.as_ref(), unit) {
                 Some(radius) => {
@@ -60,7 +60,7 @@ pub(super) fn put<'a>(
 }
 
 /// Returns the radius of the thin lines, in units of the model.
-fn other_radius(feature: &Feature, size: Option<&ThreadSize>, unit: f64) -> Option<f64> {
+fn other_radius(feature: &RoundFeature, size: Option<&ThreadSize>, unit: f64) -> Option<f64> {
     let (radius, hole) = (feature.cylinder.radius, feature.kind == FeatureKind::Hole);
     let Some(size) = size else {
         return Some(if hole { radius / CORE } else { radius * CORE });
@@ -71,7 +71,7 @@ fn other_radius(feature: &Feature, size: Option<&ThreadSize>, unit: f64) -> Opti
     (near(major) || near(minor)).then_some(if at_major { minor } else { major })
 }
 
-fn symbol(board: &mut Board, view: &Seen, feature: &Feature, radius: f64) {
+fn symbol(board: &mut Board, view: &Seen, feature: &RoundFeature, radius: f64) {
     let (cylinder, reach) = (&feature.cylinder, radius * view.factor());
     let thin = board.thin();
     match view.sight(cylinder.axis()) {
@@ -86,7 +86,7 @@ fn symbol(board: &mut Board, view: &Seen, feature: &Feature, radius: f64) {
             let pen = if hidden { dashed(board) } else { thin };
             for side in [way.perp() * reach, -way.perp() * reach] {
                 let points = ends.map(|p| p + side).to_vec();
-                board.add(Layer::Thread, Mark::Stroke { points, closed: false, pen });
+                board.add(Layer::Thread, PaperMark::Stroke { points, closed: false, pen });
             }
         }
         Sight::Oblique(_) => {}
@@ -100,7 +100,7 @@ fn dashed(board: &mut Board) -> usize {
 
 /// Returns whether the lines of a thread seen from the side are hidden; `None` if they are not drawn. The outline of a
 /// screw is visible; the outline of a hole is visible in sections and hidden elsewhere.
-fn is_hidden(view: &Seen, feature: &Feature, ends: [DVec2; 2], way: DVec2) -> Option<bool> {
+fn is_hidden(view: &Seen, feature: &RoundFeature, ends: [DVec2; 2], way: DVec2) -> Option<bool> {
     let side = way.perp() * feature.cylinder.radius * view.factor();
     let corners = ends.iter().flat_map(|p| [*p + side, *p - side]);
     let drawn = corners.filter(|p| view.has_point(*p)).count() >= 2;
@@ -112,7 +112,7 @@ fn is_hidden(view: &Seen, feature: &Feature, ends: [DVec2; 2], way: DVec2) -> Op
 fn label(
     board: &mut Board,
     views: &[Seen],
-    threaded: Vec<&Feature>,
+    threaded: Vec<&RoundFeature>,
     size: &ThreadSize,
     notes: &mut Vec<String>,
 ) {

@@ -8,7 +8,7 @@ use crate::math::DVec2;
 
 /// Source of an output vertex; indices count the points of the input's flat buffer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Source {
+pub enum VertexSource {
     /// An input point, bit for bit.
     Vertex(usize),
     /// A cut of the edge between two input points.
@@ -24,7 +24,7 @@ pub enum Source {
     Corner,
 }
 
-impl Source {
+impl VertexSource {
     /// Returns the source of a point on the edge between two input points, each given by index and
     /// place.
     pub(crate) fn on_edge(
@@ -49,7 +49,7 @@ impl Source {
 /// A tracer for the sources of output vertices: `Vec<Source>`, or [`NoSources`].
 pub(crate) trait Provenance: Default {
     /// Adds the source of the next vertex.
-    fn push(&mut self, source: impl FnOnce() -> Source);
+    fn push(&mut self, source: impl FnOnce() -> VertexSource);
     /// Adds input points, one after the other.
     fn push_vertices(&mut self, range: std::ops::Range<usize>);
     /// Adds a range of another list.
@@ -66,7 +66,7 @@ pub(crate) struct NoSources;
 
 impl Provenance for NoSources {
     #[inline(always)]
-    fn push(&mut self, _source: impl FnOnce() -> Source) {}
+    fn push(&mut self, _source: impl FnOnce() -> VertexSource) {}
     #[inline(always)]
     fn push_vertices(&mut self, _range: std::ops::Range<usize>) {}
     #[inline(always)]
@@ -77,13 +77,13 @@ impl Provenance for NoSources {
     fn truncate(&mut self, _length: usize) {}
 }
 
-impl Provenance for Vec<Source> {
-    fn push(&mut self, source: impl FnOnce() -> Source) {
+impl Provenance for Vec<VertexSource> {
+    fn push(&mut self, source: impl FnOnce() -> VertexSource) {
         self.push(source());
     }
 
     fn push_vertices(&mut self, range: std::ops::Range<usize>) {
-        self.extend(range.map(Source::Vertex));
+        self.extend(range.map(VertexSource::Vertex));
     }
 
     fn push_range(&mut self, other: &Self, range: std::ops::Range<usize>) {
@@ -107,9 +107,9 @@ impl Provenance for Vec<Source> {
 /// vertex i, a corner of the window, which no edge of the input determines.
 ///
 /// ```
-/// use durer::clip::attribute::{Source, interpolate};
+/// use durer::clip::attribute::{VertexSource, interpolate};
 ///
-/// let sources = [Source::Vertex(1), Source::Cut { from: 1, to: 0, t: 0.25 }, Source::Corner];
+/// let sources = [VertexSource::Vertex(1), VertexSource::Cut { from: 1, to: 0, t: 0.25 }, VertexSource::Corner];
 /// let heights = [10.0, 20.0];
 /// let clipped = interpolate(&sources, &heights, |a, b, t| a + (b - a) * t, |_| 0.0);
 /// assert_eq!(clipped, Some(vec![20.0, 17.5, 0.0]));
@@ -117,16 +117,16 @@ impl Provenance for Vec<Source> {
 ///
 /// `None` if a source names a point that `values` does not have.
 pub fn interpolate<V: Copy>(
-    sources: &[Source],
+    sources: &[VertexSource],
     values: &[V],
     mut lerp: impl FnMut(V, V, f64) -> V,
     mut corner: impl FnMut(usize) -> V,
 ) -> Option<Vec<V>> {
     let value = |i: usize| values.get(i).copied();
-    let mut output = |(i, source): (usize, &Source)| match *source {
-        Source::Vertex(k) => value(k),
-        Source::Cut { from, to, t } => Some(lerp(value(from)?, value(to)?, t)),
-        Source::Corner => Some(corner(i)),
+    let mut output = |(i, source): (usize, &VertexSource)| match *source {
+        VertexSource::Vertex(k) => value(k),
+        VertexSource::Cut { from, to, t } => Some(lerp(value(from)?, value(to)?, t)),
+        VertexSource::Corner => Some(corner(i)),
     };
     sources.iter().enumerate().map(&mut output).collect()
 }
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn unknown_points_are_noticed() {
-        let sources = [Source::Cut { from: 0, to: 2, t: 0.5 }];
+        let sources = [VertexSource::Cut { from: 0, to: 2, t: 0.5 }];
         assert_eq!(interpolate(&sources, &[1.0, 2.0], |a, _, _| a, |_| 0.0), None);
     }
 }

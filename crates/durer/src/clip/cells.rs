@@ -46,7 +46,7 @@ struct Cell {
 
 /// The part of a geometry in one cell.
 #[derive(Debug)]
-pub struct Piece {
+pub struct CellPiece {
     /// Number of the cell.
     pub cell: usize,
     /// The part, and the changes made to it.
@@ -105,7 +105,7 @@ impl Cells {
     ///
     /// # Errors
     /// As [`Cutter::cut`].
-    pub fn cut(&self, geometry: &Geometry, rules: &Rules) -> Result<Vec<Piece>> {
+    pub fn cut(&self, geometry: &Geometry, rules: &Rules) -> Result<Vec<CellPiece>> {
         let Some(bounds) = geometry.bounds() else { return Ok(Vec::new()) };
         let near = self.near(&bounds);
         let large = if near.len() > 1 { Large::new(geometry, rules)? } else { None };
@@ -119,9 +119,9 @@ impl Cells {
                     Cutter { mask: &of.mask, op, rules, algorithm: None }.cut(geometry)?
                 }
             };
-            Ok(Piece { cell, cut })
+            Ok(CellPiece { cell, cut })
         };
-        let pieces: Result<Vec<Piece>> = parallel::map(near, cut).into_iter().collect();
+        let pieces: Result<Vec<CellPiece>> = parallel::map(near, cut).into_iter().collect();
         let repaired = large.is_some_and(|large| large.repaired);
         let mut pieces = pieces?;
         pieces.iter_mut().for_each(|piece| piece.cut.repaired |= repaired);

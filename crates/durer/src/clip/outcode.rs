@@ -10,7 +10,7 @@ use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign};
 
 /// Range of depths in the clip volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum DepthRange {
+pub enum ClipDepths {
     /// −w ≤ z ≤ w, as in OpenGL; durer's own convention.
     #[default]
     NegativeOneToOne,
@@ -63,10 +63,10 @@ impl Outcode {
     /// Returns the code of a homogeneous point (x, y, z, w) of clip space; any w, so that a point behind the eye is
     /// beyond several borders at once.
     #[inline]
-    pub fn of_homogeneous(p: DVec4, depth: DepthRange) -> Self {
+    pub fn of_homogeneous(p: DVec4, depth: ClipDepths) -> Self {
         let near = match depth {
-            DepthRange::NegativeOneToOne => -p.w,
-            DepthRange::ZeroToOne => 0.0,
+            ClipDepths::NegativeOneToOne => -p.w,
+            ClipDepths::ZeroToOne => 0.0,
         };
         let inside = [p.x >= -p.w, p.x <= p.w, p.y >= -p.w, p.y <= p.w, p.z >= near, p.z <= p.w];
         Self::from_inside(inside)
@@ -169,14 +169,14 @@ mod tests {
     #[test]
     fn depth_ranges_differ_only_at_the_near_plane() {
         let p = DVec4::new(0.0, 0.0, -0.5, 1.0);
-        assert_eq!(Outcode::of_homogeneous(p, DepthRange::NegativeOneToOne), Outcode::INSIDE);
-        assert_eq!(Outcode::of_homogeneous(p, DepthRange::ZeroToOne), Outcode::NEAR);
+        assert_eq!(Outcode::of_homogeneous(p, ClipDepths::NegativeOneToOne), Outcode::INSIDE);
+        assert_eq!(Outcode::of_homogeneous(p, ClipDepths::ZeroToOne), Outcode::NEAR);
     }
 
     #[test]
     fn a_point_behind_the_eye_is_never_inside() {
         let p = DVec4::new(0.0, 0.0, 0.0, -1.0);
         let all = Outcode::BORDERS.into_iter().fold(Outcode::INSIDE, |a, b| a | b);
-        assert_eq!(Outcode::of_homogeneous(p, DepthRange::NegativeOneToOne), all);
+        assert_eq!(Outcode::of_homogeneous(p, ClipDepths::NegativeOneToOne), all);
     }
 }

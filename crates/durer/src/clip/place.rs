@@ -9,8 +9,8 @@
 //! is tested against the scissor rectangle ([`crate::raster`] visits no others), the mask if there is one
 //! ([`crate::fragment::PixelMask`]), and the depth range of the volume.
 
-use super::outcode::{DepthRange, Outcode};
-use super::volume::{self, Blend, ClipVertex, Step, cut_ring, planes_in_source};
+use super::outcode::{ClipDepths, Outcode};
+use super::volume::{self, ClipVertex, Interpolate, Step, cut_ring, planes_in_source};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec3, DVec4, Plane};
 use crate::trace::Tracer;
@@ -174,22 +174,22 @@ pub const EYE: Outcode = Outcode(64);
 /// The result of [`ClipPlace::PerPixel`] has yet to be clipped, when its pixels are drawn.
 ///
 /// ```
-/// use durer::clip::outcode::DepthRange;
+/// use durer::clip::outcode::ClipDepths;
 /// use durer::clip::place::{ClipPlace, clip};
 /// use durer::math::{DMat4, DVec3};
 /// use durer::trace::NoTrace;
 /// let triangle = [DVec3::ZERO, DVec3::X * 3.0, DVec3::Y].map(|p| (p, ()));
 /// for &place in ClipPlace::ALL {
-///     let depth = DepthRange::NegativeOneToOne;
+///     let depth = ClipDepths::NegativeOneToOne;
 ///     let vertices = clip(place, &triangle, &DMat4::IDENTITY, depth, &mut NoTrace).len();
 ///     assert_eq!(vertices, if place == ClipPlace::PerPixel { 3 } else { 4 });
 /// }
 /// ```
-pub fn clip<A: Blend>(
+pub fn clip<A: Interpolate>(
     place: ClipPlace,
     polygon: &[(DVec3, A)],
     clip_from_world: &DMat4,
-    depth: DepthRange,
+    depth: ClipDepths,
     t: &mut impl Tracer<Step<A>>,
 ) -> Vec<NdcVertex<A>> {
     let transformed = |(p, a): &(DVec3, A)| ClipVertex {
@@ -231,9 +231,9 @@ const DEPTHS: std::ops::Range<usize> = 4..6;
 const ALL_BORDERS: std::ops::Range<usize> = 0..6;
 
 /// Clips to the near and the far plane, in clip space.
-fn between_near_and_far<A: Blend>(
+fn between_near_and_far<A: Interpolate>(
     ring: &[ClipVertex<A>],
-    depth: DepthRange,
+    depth: ClipDepths,
     t: &mut impl Tracer<Step<A>>,
 ) -> Vec<ClipVertex<A>> {
     if ring.iter().any(|v| !v.position.is_finite()) {
@@ -246,7 +246,7 @@ fn between_near_and_far<A: Blend>(
         let cut = |[i, o]: [&ClipVertex<A>; 2], [d_in, d_out]: [f64; 2]| {
             let total = d_in - d_out;
             ClipVertex {
-                position: Blend::blend(&i.position, -d_out, &o.position, d_in, total),
+                position: Interpolate::blend(&i.position, -d_out, &o.position, d_in, total),
                 attributes: A::blend(&i.attributes, -d_out, &o.attributes, d_in, total),
             }
         };
@@ -256,7 +256,7 @@ fn between_near_and_far<A: Blend>(
 }
 
 /// Divides by w; a ring with a vertex that has no place is left out.
-fn divided<A: Blend>(ring: impl Iterator<Item = ClipVertex<A>>) -> Vec<NdcVertex<A>> {
+fn divided<A: Interpolate>(ring: impl Iterator<Item = ClipVertex<A>>) -> Vec<NdcVertex<A>> {
     let mut divided = Vec::new();
     for v in ring {
         let inv_w = v.position.w.recip();
@@ -269,7 +269,7 @@ fn divided<A: Blend>(ring: impl Iterator<Item = ClipVertex<A>>) -> Vec<NdcVertex
     if divided.len() < 3 { Vec::new() } else { divided }
 }
 
-fn in_world<A: Blend>(
+fn in_world<A: Interpolate>(
     polygon: &[(DVec3, A)],
     planes: &[Plane; 6],
     t: &mut impl Tracer<Step<A>>,
@@ -282,7 +282,7 @@ fn in_world<A: Blend>(
     for (plane, border) in planes.iter().zip(Outcode::BORDERS) {
         let distance = |v: &(DVec3, A)| plane.evaluate(v.0);
         let cut = |[i, o]: [&(DVec3, A); 2], [d_in, d_out]: [f64; 2]| {
-            Blend::blend(i, -d_out, o, d_in, d_in - d_out)
+            Interpolate::blend(i, -d_out, o, d_in, d_in - d_out)
         };
         ring = cut_ring(&ring, border, distance, cut, |v| (v.0.extend(1.0), v.1.clone()), t);
     }
@@ -291,9 +291,9 @@ fn in_world<A: Blend>(
 
 /// Returns the smallest w of a point in the view volume: half of it is a safe distance for the eye plane, far enough
 /// from the eye for the division to keep the digits of visible points.
-fn nearest_w(clip_from_world: &DMat4, depth: DepthRange) -> f64 {
+fn nearest_w(clip_from_world: &DMat4, depth: ClipDepths) -> f64 {
     let world_from_clip = clip_from_world.inverse();
-    let near = if depth == DepthRange::ZeroToOne { 0.0 } else { -1.0 };
+    let near = if depth == ClipDepths::ZeroToOne { 0.0 } else { -1.0 };
     let corners = (0..8).map(|i| {
         let pick = |bit: i32, lo: f64| if i >> bit & 1 == 1 { 1.0 } else { lo };
         // The world point of a corner has w = 1; its w in clip space is that of the corner inverted.
@@ -303,7 +303,7 @@ fn nearest_w(clip_from_world: &DMat4, depth: DepthRange) -> f64 {
     if smallest.is_finite() { smallest } else { f64::MIN_POSITIVE }
 }
 
-fn before_eye<A: Blend>(
+fn before_eye<A: Interpolate>(
     ring: &[ClipVertex<A>],
     smallest_w: f64,
     t: &mut impl Tracer<Step<A>>,
@@ -314,7 +314,7 @@ fn before_eye<A: Blend>(
     }
     let cut = |[i, o]: [&ClipVertex<A>; 2], [d_in, d_out]: [f64; 2]| {
         let total = d_in - d_out;
-        let mut position = Blend::blend(&i.position, -d_out, &o.position, d_in, total);
+        let mut position = Interpolate::blend(&i.position, -d_out, &o.position, d_in, total);
         position.w = smallest_w;
         let attributes = A::blend(&i.attributes, -d_out, &o.attributes, d_in, total);
         ClipVertex { position, attributes }
@@ -322,9 +322,9 @@ fn before_eye<A: Blend>(
     cut_ring(ring, EYE, |v| v.position.w - smallest_w, cut, ClipVertex::parts, t)
 }
 
-fn in_ndc<A: Blend>(
+fn in_ndc<A: Interpolate>(
     mut ring: Vec<NdcVertex<A>>,
-    depth: DepthRange,
+    depth: ClipDepths,
     borders: std::ops::Range<usize>,
     t: &mut impl Tracer<Step<A>>,
 ) -> Vec<NdcVertex<A>> {
@@ -340,12 +340,12 @@ fn in_ndc<A: Blend>(
 
 /// Computes the point at which an edge meets a border, after the division: position and 1/w are linear there, and
 /// attributes are weighted by 1/w of their ends.
-fn cut_ndc<A: Blend>([i, o]: [&NdcVertex<A>; 2], [d_in, d_out]: [f64; 2]) -> NdcVertex<A> {
+fn cut_ndc<A: Interpolate>([i, o]: [&NdcVertex<A>; 2], [d_in, d_out]: [f64; 2]) -> NdcVertex<A> {
     let total = d_in - d_out;
     let (wi, wo) = (-d_out * i.inv_w, d_in * o.inv_w);
     NdcVertex {
-        position: Blend::blend(&i.position, -d_out, &o.position, d_in, total),
-        inv_w: Blend::blend(&i.inv_w, -d_out, &o.inv_w, d_in, total),
+        position: Interpolate::blend(&i.position, -d_out, &o.position, d_in, total),
+        inv_w: Interpolate::blend(&i.inv_w, -d_out, &o.inv_w, d_in, total),
         attributes: A::blend(&i.attributes, wi, &o.attributes, wo, wi + wo),
     }
 }

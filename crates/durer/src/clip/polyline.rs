@@ -13,7 +13,7 @@
 //! Object space. The border's edges are kept in horizontal slabs, so a segment is compared only with edges at its own
 //! heights: O(n·e/s) for n segments, e edges, s ≈ √e slabs crossed by a segment's extent.
 
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::exact::{crossing, side};
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::{ClippedLines, Near, Prepared};
@@ -52,7 +52,7 @@ pub const INFO: Info = Info {
 
 /// Part of the polylines to keep: inside or outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Part {
+pub enum KeptPart {
     /// In the closed polygon.
     #[default]
     Inside,
@@ -64,7 +64,7 @@ pub enum Part {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
     /// Part of the polylines to keep: inside or outside.
-    pub part: Part,
+    pub part: KeptPart,
 }
 
 /// Step of the algorithm.
@@ -99,7 +99,7 @@ pub fn replay(options: &Options, steps: &[Step]) -> Vec<(usize, Vec<DVec2>)> {
     let mut open = None;
     for step in steps {
         let Step::Part { line, start, end, inside, .. } = *step;
-        if inside != (options.part == Part::Inside) {
+        if inside != (options.part == KeptPart::Inside) {
             open = None;
             continue;
         }
@@ -200,7 +200,7 @@ fn clip_one(
     for (k, pair) in part.windows(2).enumerate() {
         let (a, b) = (pair[0], pair[1]);
         let segment = first + k;
-        let source = |p: DVec2| Source::on_edge(p, (segment, a), (segment + 1, b));
+        let source = |p: DVec2| VertexSource::on_edge(p, (segment, a), (segment + 1, b));
         let cuts = border.cuts(a, b);
         if !cuts.is_empty() {
             known = None;
@@ -222,7 +222,7 @@ fn clip_one(
         }
         for (start, end, inside) in parts {
             t.step(|| Step::Part { line, segment, start, end, inside });
-            if inside != (options.part == Part::Inside) {
+            if inside != (options.part == KeptPart::Inside) {
                 out.end_piece(line);
                 open = false;
                 continue;
@@ -415,7 +415,7 @@ mod tests {
         let out = clip(&frame(), &across, &[2], &Options::default(), &mut NoTrace).unwrap();
         let pieces: Vec<_> = out.pieces().map(|(_, piece)| piece.to_vec()).collect();
         assert_eq!(pieces, [vec![p(0, 3), p(2, 3)], vec![p(4, 3), p(6, 3)]]);
-        assert_eq!(out.sources[1], Source::Cut { from: 0, to: 1, t: 0.375 });
+        assert_eq!(out.sources[1], VertexSource::Cut { from: 0, to: 1, t: 0.375 });
     }
 
     #[test]
@@ -427,7 +427,7 @@ mod tests {
                 (inside.ends.len(), ends),
                 (1, (line[0].max(p(0, 0)), line[1].min(p(6, 6))))
             );
-            let part = Part::Outside;
+            let part = KeptPart::Outside;
             let outside = clip(&frame(), &line, &[2], &Options { part }, &mut NoTrace).unwrap();
             assert_eq!(outside.ends.len(), if line[0].y == 0.0 { 2 } else { 0 });
         }
@@ -437,9 +437,9 @@ mod tests {
     fn what_only_touches_the_border_is_not_cut() {
         // Past a corner of the frame; inside it, past corners of its hole and along an edge of the hole.
         for (line, part) in [
-            ([p(-1, 1), p(1, -1)], Part::Outside),
-            ([p(1, 3), p(3, 1)], Part::Inside),
-            ([p(2, 1), p(2, 5)], Part::Inside),
+            ([p(-1, 1), p(1, -1)], KeptPart::Outside),
+            ([p(1, 3), p(3, 1)], KeptPart::Inside),
+            ([p(2, 1), p(2, 5)], KeptPart::Inside),
         ] {
             let out = clip(&frame(), &line, &[2], &Options { part }, &mut NoTrace).unwrap();
             assert_eq!(out.points, line, "{part:?}");
@@ -461,7 +461,7 @@ mod tests {
             let line: Vec<DVec2> = points.iter().map(|&(x, y)| p(x, y)).collect();
             let whole: f64 = line.windows(2).map(|w| (w[1] - w[0]).length()).sum();
             let mut sum = 0.0;
-            for part in [Part::Inside, Part::Outside] {
+            for part in [KeptPart::Inside, KeptPart::Outside] {
                 let mut steps = Recorder::default();
                 let options = Options { part };
                 let out = clip(&frame(), &line, &[line.len()], &options, &mut steps).unwrap();

@@ -111,7 +111,7 @@ pub struct Kept {
 
 /// Relation of a box to the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum BoxPlace {
     /// All of it is in the window.
     Within,
     /// All of it is beyond one border.
@@ -120,7 +120,7 @@ pub enum Place {
     Crossing,
 }
 
-impl Place {
+impl BoxPlace {
     /// Returns the relation of a box to a window.
     fn of(window: &Rect, bounds: &Rect) -> Self {
         let code = |p: DVec2| Outcode::of_point_2d(window, p);
@@ -143,7 +143,7 @@ pub enum Step {
         /// Its box.
         bounds: Rect,
         /// Its relation to the window.
-        place: Place,
+        place: BoxPlace,
     },
     /// A character is kept as it is.
     Keep {
@@ -248,7 +248,7 @@ pub fn clip(
         TextClipper::String => {
             let corners = text.iter().flat_map(|own| [own.bounds.min(), own.bounds.max()]);
             let Some(bounds) = Rect::around(corners) else { return Ok(kept) };
-            let place = Place::of(window, &bounds);
+            let place = BoxPlace::of(window, &bounds);
             t.step(|| Step::Box { character: None, bounds, place });
             Some(place)
         }
@@ -256,14 +256,14 @@ pub fn clip(
     };
     for (character, own) in text.iter().enumerate() {
         let place = whole.unwrap_or_else(|| {
-            let place = Place::of(window, &own.bounds);
+            let place = BoxPlace::of(window, &own.bounds);
             t.step(|| Step::Box { character: Some(character), bounds: own.bounds, place });
             place
         });
-        if place == Place::Within {
+        if place == BoxPlace::Within {
             t.step(|| Step::Keep { character, outline: own.outline.clone() });
             kept.push(Kept { character, outline: own.outline.clone() });
-        } else if place == Place::Beyond || options.clipper != TextClipper::Outline {
+        } else if place == BoxPlace::Beyond || options.clipper != TextClipper::Outline {
             t.step(|| Step::Drop { character });
         } else {
             let outline = cut(window, (character, &own.outline), t)?;

@@ -10,7 +10,7 @@
 //! the volume without tolerance, clipping twice changes nothing, and because the inside point always comes first, both
 //! directions of an edge give the same bits.
 
-use super::outcode::{DepthRange, Outcode};
+use super::outcode::{ClipDepths, Outcode};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Plane};
 use crate::trace::{NoTrace, PseudocodeLine, Tracer};
@@ -73,7 +73,7 @@ const COORDINATE_LIMIT: f64 = 1e150;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// −w … w or 0 … w.
-    pub depth: DepthRange,
+    pub depth: ClipDepths,
     /// All six borders, or only the near plane.
     pub borders: Borders,
 }
@@ -102,18 +102,18 @@ pub enum Borders {
 }
 
 /// Anything that can be interpolated along an edge: attributes of vertices.
-pub trait Blend: Clone {
+pub trait Interpolate: Clone {
     /// Returns (a · wa + b · wb) / total, component by component; the weights are not negative.
     fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self;
 }
 
-impl Blend for () {
+impl Interpolate for () {
     fn blend((): &Self, _: f64, (): &Self, _: f64, _: f64) -> Self {}
 }
 
 macro_rules! blend_arithmetic {
     ($($type:ty),+) => {
-        $(impl Blend for $type {
+        $(impl Interpolate for $type {
             #[inline]
             fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
                 (*a * wa + *b * wb) / total
@@ -123,13 +123,13 @@ macro_rules! blend_arithmetic {
 }
 blend_arithmetic!(f64, DVec2, DVec3, DVec4);
 
-impl<T: Blend, const N: usize> Blend for [T; N] {
+impl<T: Interpolate, const N: usize> Interpolate for [T; N] {
     fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
         std::array::from_fn(|k| T::blend(&a[k], wa, &b[k], wb, total))
     }
 }
 
-impl<A: Blend, B: Blend> Blend for (A, B) {
+impl<A: Interpolate, B: Interpolate> Interpolate for (A, B) {
     fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
         (A::blend(&a.0, wa, &b.0, wb, total), B::blend(&a.1, wa, &b.1, wb, total))
     }
@@ -211,7 +211,7 @@ impl<A> PseudocodeLine for Step<A> {
 
 /// Returns the six distances from the borders in the order of [`Outcode::BORDERS`]; ≥ 0 is inside.
 /// Their signs are exact, and no positive factor of p changes them.
-pub fn boundary_coordinates(p: DVec4, depth: DepthRange) -> [f64; 6] {
+pub fn boundary_coordinates(p: DVec4, depth: ClipDepths) -> [f64; 6] {
     Options { depth, ..Options::default() }.distances(p)
 }
 
@@ -219,12 +219,12 @@ pub fn boundary_coordinates(p: DVec4, depth: DepthRange) -> [f64; 6] {
 /// inward, in the order of [`Outcode::BORDERS`].
 ///
 /// The matrix may hold a perspective; its source space is affine (w = 1).
-pub fn planes_in_source(clip_from_source: &DMat4, depth: DepthRange) -> [Plane; 6] {
+pub fn planes_in_source(clip_from_source: &DMat4, depth: ClipDepths) -> [Plane; 6] {
     let rows = clip_from_source.transpose();
     let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
     let near = match depth {
-        DepthRange::NegativeOneToOne => w + z,
-        DepthRange::ZeroToOne => z,
+        ClipDepths::NegativeOneToOne => w + z,
+        ClipDepths::ZeroToOne => z,
     };
     [w + x, w - x, w + y, w - y, near, w - z]
         .map(|row| Plane { normal: row.truncate(), distance: row.w })
@@ -244,8 +244,8 @@ impl Options {
     fn distances(&self, p: DVec4) -> [f64; 6] {
         let side = self.side() * p.w;
         let near = match self.depth {
-            DepthRange::NegativeOneToOne => p.w + p.z,
-            DepthRange::ZeroToOne => p.z,
+            ClipDepths::NegativeOneToOne => p.w + p.z,
+            ClipDepths::ZeroToOne => p.z,
         };
         [side + p.x, side - p.x, side + p.y, side - p.y, near, p.w - p.z]
     }
@@ -269,14 +269,14 @@ impl Options {
             1 => p.x = side,
             2 => p.y = -side,
             3 => p.y = side,
-            4 if self.depth == DepthRange::ZeroToOne => p.z = 0.0,
+            4 if self.depth == ClipDepths::ZeroToOne => p.z = 0.0,
             4 => p.z = -p.w,
             _ => p.z = p.w,
         }
     }
 
     /// Computes the point at which an edge meets a border; `d_in ≥ 0 > d_out`.
-    fn cut<A: Blend>(
+    fn cut<A: Interpolate>(
         &self,
         border: usize,
         [inside, outside]: [&ClipVertex<A>; 2],
@@ -287,7 +287,7 @@ impl Options {
         }
         let total = d_in - d_out;
         let (i, o) = (&inside.position, &outside.position);
-        let mut position = Blend::blend(i, -d_out, o, d_in, total);
+        let mut position = Interpolate::blend(i, -d_out, o, d_in, total);
         self.place(border, &mut position);
         let attributes = A::blend(&inside.attributes, -d_out, &outside.attributes, d_in, total);
         ClipVertex { position, attributes }
@@ -323,7 +323,7 @@ fn needed<A>(
 ///
 /// A segment that touches the volume in one point is returned with two equal ends. One that ends in
 /// the null vector, which is not a point, is left out.
-pub fn clip_segment<A: Blend>(
+pub fn clip_segment<A: Interpolate>(
     segment: [ClipVertex<A>; 2],
     options: &Options,
     t: &mut impl Tracer<Step<A>>,
@@ -377,7 +377,7 @@ pub fn clip_segment<A: Blend>(
 /// let ring = corners.map(|p| ClipVertex { position: DVec4::from(p), attributes: () });
 /// assert_eq!(clip_polygon(&ring, &Options::default(), &mut NoTrace).len(), 4);
 /// ```
-pub fn clip_polygon<A: Blend>(
+pub fn clip_polygon<A: Interpolate>(
     ring: &[ClipVertex<A>],
     options: &Options,
     t: &mut impl Tracer<Step<A>>,
@@ -403,7 +403,7 @@ pub fn clip_polygon<A: Blend>(
 /// clip_triangles(&[triangle], &Options::default(), &mut out);
 /// assert_eq!(out.len(), 2);
 /// ```
-pub fn clip_triangles<A: Blend + Copy>(
+pub fn clip_triangles<A: Interpolate + Copy>(
     triangles: &[[ClipVertex<A>; 3]],
     options: &Options,
     out: &mut Vec<[ClipVertex<A>; 3]>,
@@ -429,7 +429,7 @@ pub fn clip_triangles<A: Blend + Copy>(
 }
 
 /// Clips a ring in place, or empties it; `spare` is room to work.
-fn clip_ring<A: Blend>(
+fn clip_ring<A: Interpolate>(
     ring: &mut Vec<ClipVertex<A>>,
     spare: &mut Vec<ClipVertex<A>>,
     options: &Options,

@@ -3,8 +3,8 @@
 use super::brush::{Brush, Look};
 use super::lighting::ShadeModel;
 use super::state::{CullFace, Pipeline, RasterPosition};
-use super::{Primitive, Vertex};
-use crate::clip::volume::{Blend, ClipVertex, Options, clip_polygon, clip_segment};
+use super::{CornerVertex, Primitive};
+use crate::clip::volume::{ClipVertex, Interpolate, Options, clip_polygon, clip_segment};
 use crate::fragment::{FragmentState, Scissor};
 use crate::math::{DMat3, DMat4, DVec2, DVec3, DVec4, IVec2, Vec4};
 use crate::raster::interpolate::{PerspectivePlane, ScreenPlane};
@@ -12,7 +12,7 @@ use crate::raster::line::{self, bresenham, projected};
 use crate::raster::point;
 use crate::raster::triangle::{self, SnappedTriangle, TriangleRasterizer};
 use crate::shade::color::encode_rgba8;
-use crate::target::{Framebuffer, NO_ITEM, Origin};
+use crate::target::{Framebuffer, NO_ITEM, RowOrigin};
 use crate::trace::NoTrace;
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
@@ -26,13 +26,13 @@ struct Paint {
     tex_coord: DVec2,
 }
 
-impl Blend for Paint {
+impl Interpolate for Paint {
     fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
         Self {
-            front: Blend::blend(&a.front, wa, &b.front, wb, total),
-            back: Blend::blend(&a.back, wa, &b.back, wb, total),
-            index: Blend::blend(&a.index, wa, &b.index, wb, total),
-            tex_coord: Blend::blend(&a.tex_coord, wa, &b.tex_coord, wb, total),
+            front: Interpolate::blend(&a.front, wa, &b.front, wb, total),
+            back: Interpolate::blend(&a.back, wa, &b.back, wb, total),
+            index: Interpolate::blend(&a.index, wa, &b.index, wb, total),
+            tex_coord: Interpolate::blend(&a.tex_coord, wa, &b.tex_coord, wb, total),
         }
     }
 }
@@ -121,7 +121,7 @@ impl<'a> Vertices<'a> {
         Self { p, clip_from_object: p.projection * p.model_view, normals }
     }
 
-    fn corner(&self, v: &Vertex) -> Corner {
+    fn corner(&self, v: &CornerVertex) -> Corner {
         let p = self.p;
         let color = v.color.unwrap_or(p.color);
         let [front, back] = if p.lighting.enabled {
@@ -161,7 +161,7 @@ fn shaded<const N: usize>(p: &Pipeline, mut corners: [Corner; N], from: usize) -
 pub(super) fn draw(
     p: &Pipeline,
     primitive: Primitive,
-    vertices: &[Vertex],
+    vertices: &[CornerVertex],
     target: &mut Framebuffer,
 ) {
     let of = Vertices::new(p);
@@ -191,7 +191,7 @@ pub(super) fn draw(
 /// Returns the raster position of a vertex; `None` if it is clipped away.
 pub(super) fn raster_position(
     p: &Pipeline,
-    vertex: &Vertex,
+    vertex: &CornerVertex,
     target: &Framebuffer,
 ) -> Option<RasterPosition> {
     let corner = Vertices::new(p).corner(vertex);
@@ -205,8 +205,8 @@ fn on_screen(p: &Pipeline, v: &Corner, target: &Framebuffer) -> OnScreen {
     let [x, y, w, h] = viewport(p, target).map(f64::from);
     let ndc: DVec3 = v.position.truncate() / v.position.w;
     let down = match target.origin {
-        Origin::TopLeft => 1.0 - ndc.y,
-        Origin::BottomLeft => 1.0 + ndc.y,
+        RowOrigin::TopLeft => 1.0 - ndc.y,
+        RowOrigin::BottomLeft => 1.0 + ndc.y,
     };
     OnScreen {
         at: DVec2::new(x + (ndc.x + 1.0) * 0.5 * w, y + down * 0.5 * h),
@@ -266,7 +266,7 @@ fn segment(brush: &Brush, ends: [Corner; 2], target: &mut Framebuffer) {
     let paint = |t: f64| {
         // Linear in space: nearer ends have more weight.
         let (near, far) = (a.inv_w * (1.0 - t), b.inv_w * t);
-        Blend::blend(&a.paint, near, &b.paint, far, near + far)
+        Interpolate::blend(&a.paint, near, &b.paint, far, near + far)
     };
     for at in pixels {
         let t = |at: IVec2| {
@@ -296,7 +296,7 @@ fn triangle(brush: &Brush, corners: [OnScreen; 3], target: &mut Framebuffer) {
     // Counter-clockwise with y up is negative where rows count downwards.
     let front = match snapped.doubled_area() {
         0 => return,
-        area => (area < 0) == (target.origin == Origin::TopLeft),
+        area => (area < 0) == (target.origin == RowOrigin::TopLeft),
     };
     if p.cull == (if front { CullFace::Front } else { CullFace::Back }) {
         return;

@@ -1,6 +1,6 @@
 //! Evaluators: curves and surfaces by their control points, drawn as lines and triangles.
 
-use super::{Primitive, Vertex};
+use super::{CornerVertex, Primitive};
 use crate::curve::b_spline::BSpline;
 use crate::curve::bezier::de_casteljau;
 use crate::curve::evaluator::patch;
@@ -13,7 +13,7 @@ const MAX_STEPS: u32 = 4096;
 
 /// A curve in space.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Curve {
+pub enum SpaceCurve {
     /// A Bézier curve through its first and last control point.
     Bezier(Vec<DVec3>),
     /// A non-uniform rational B-spline: control points times their weight, and the weight; the degree
@@ -21,7 +21,7 @@ pub enum Curve {
     Nurbs(BSpline<DVec4>),
 }
 
-impl Curve {
+impl SpaceCurve {
     /// Returns the point at a parameter 0 … 1; `None` without control points and where weights make it
     /// infinite.
     pub fn point(&self, t: f64) -> Option<DVec3> {
@@ -36,22 +36,22 @@ impl Curve {
         .filter(|p| p.is_finite())
     }
 
-    pub(super) fn vertices(&self, steps: u32) -> Result<(Primitive, Vec<Vertex>)> {
+    pub(super) fn vertices(&self, steps: u32) -> Result<(Primitive, Vec<CornerVertex>)> {
         check(steps)?;
-        let at = |i: u32| self.point(f64::from(i) / f64::from(steps)).map(Vertex::from);
-        let vertices: Option<Vec<Vertex>> = (0..=steps).map(at).collect();
+        let at = |i: u32| self.point(f64::from(i) / f64::from(steps)).map(CornerVertex::from);
+        let vertices: Option<Vec<CornerVertex>> = (0..=steps).map(at).collect();
         Ok((Primitive::LineStrip, vertices.ok_or_else(infinite)?))
     }
 }
 
 /// A Bézier patch: rows of control points, all of one length; u runs along each row, v across the rows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Patch {
+pub struct BezierPatch {
     /// The control points.
     pub rows: Vec<Vec<DVec3>>,
 }
 
-impl Patch {
+impl BezierPatch {
     /// Returns the point at two parameters 0 … 1; `None` without control points and if it is not
     /// finite.
     pub(crate) fn point(&self, u: f64, v: f64) -> Option<DVec3> {
@@ -74,17 +74,20 @@ impl Patch {
             .try_normalize()
     }
 
-    pub(super) fn vertices(&self, [across, down]: [u32; 2]) -> Result<(Primitive, Vec<Vertex>)> {
+    pub(super) fn vertices(
+        &self,
+        [across, down]: [u32; 2],
+    ) -> Result<(Primitive, Vec<CornerVertex>)> {
         check(across)?;
         check(down)?;
         let at = |i: u32, j: u32| {
             let (u, v) = (f64::from(i) / f64::from(across), f64::from(j) / f64::from(down));
             let position = self.point(u, v).ok_or_else(infinite)?;
-            Ok(Vertex { normal: self.normal(u, v), ..Vertex::from(position) })
+            Ok(CornerVertex { normal: self.normal(u, v), ..CornerVertex::from(position) })
         };
         let mut rows = Vec::new();
         for j in 0..=down {
-            let row: Result<Vec<Vertex>> = (0..=across).map(|i| at(i, j)).collect();
+            let row: Result<Vec<CornerVertex>> = (0..=across).map(|i| at(i, j)).collect();
             rows.push(row?);
         }
         let mut vertices = Vec::new();

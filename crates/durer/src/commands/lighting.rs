@@ -19,7 +19,7 @@ pub const MAX_LIGHTS: usize = 8;
 
 /// A source of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Light {
+pub struct LightSource {
     /// Linear colour of the ambient light, which is attenuated.
     pub ambient: Vec4,
     /// Linear colour that is reflected in all directions.
@@ -38,7 +38,7 @@ pub struct Light {
     pub attenuation: [f64; 3],
 }
 
-impl Default for Light {
+impl Default for LightSource {
     /// Returns the default: OpenGL's light 0, white, directional from +z, without ambient light.
     fn default() -> Self {
         let black = Vec4::new(0.0, 0.0, 0.0, 1.0);
@@ -57,7 +57,7 @@ impl Default for Light {
 
 /// Reflection of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
+pub struct Reflection {
     /// Share of ambient light.
     pub ambient: Vec4,
     /// Share of diffuse light; its alpha is the result's alpha.
@@ -70,7 +70,7 @@ pub struct Material {
     pub shininess: f64,
 }
 
-impl Default for Material {
+impl Default for Reflection {
     /// Returns the default: OpenGL's initial material.
     fn default() -> Self {
         let grey = |v: f32| Vec4::new(v, v, v, 1.0);
@@ -136,17 +136,17 @@ pub enum ShadeModel {
 
 /// The state of lighting.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Lighting {
+pub struct LightingState {
     /// True if vertices are lit; at first they have their own colours.
     pub enabled: bool,
     /// The lights that are on, in eye space.
-    pub lights: [Option<Light>; MAX_LIGHTS],
+    pub lights: [Option<LightSource>; MAX_LIGHTS],
     /// Ambient light, viewer, sides.
     pub model: LightModel,
     /// Material of front faces.
-    pub front: Material,
+    pub front: Reflection,
     /// Material of back faces.
-    pub back: Material,
+    pub back: Reflection,
     /// Property that follows the vertices' colour; at first none.
     pub color_material: Option<ColorMaterial>,
     /// True if normals are made unit length after their transformation.
@@ -172,7 +172,7 @@ pub struct Step {
     pub color: DVec3,
 }
 
-impl Light {
+impl LightSource {
     /// Returns the light in another space.
     pub(super) fn transformed(&self, to: &crate::math::DMat4) -> Self {
         let spot_direction = DMat3::from_mat4(*to) * self.spot_direction;
@@ -207,7 +207,7 @@ impl Light {
     }
 }
 
-impl Material {
+impl Reflection {
     /// Checks the material's numbers.
     ///
     /// # Errors
@@ -229,9 +229,9 @@ fn exponent(what: &'static str, value: f64) -> Result<()> {
     }
 }
 
-impl Lighting {
+impl LightingState {
     /// Returns the front or the back material, with the property that follows a vertex's colour.
-    fn material(&self, front: bool, color: Vec4) -> Material {
+    fn material(&self, front: bool, color: Vec4) -> Reflection {
         let mut material = if front { self.front } else { self.back };
         match self.color_material {
             None => {}
@@ -250,13 +250,13 @@ impl Lighting {
     /// normal are in eye space; the normal is used as it is, reversed for the back.
     ///
     /// ```
-    /// use durer::commands::{Light, Lighting, Material};
+    /// use durer::commands::{LightSource, LightingState, Reflection};
     /// use durer::math::{DVec3, DVec4, Vec4};
     /// use durer::trace::NoTrace;
     ///
     /// // The initial light from +z, 60 degrees from the normal: 0.2 · 0.2 ambient and 0.8 · ½ diffuse.
-    /// let mut lighting = Lighting { enabled: true, ..Lighting::default() };
-    /// lighting.lights[0] = Some(Light::default());
+    /// let mut lighting = LightingState { enabled: true, ..LightingState::default() };
+    /// lighting.lights[0] = Some(LightSource::default());
     /// let normal = DVec3::new(0.75_f64.sqrt(), 0.0, 0.5);
     /// let lit = lighting.lit(true, DVec4::W, normal, Vec4::ONE, &mut NoTrace);
     /// assert!((lit.x - 0.44).abs() < 1e-6 && lit.w == 1.0);
@@ -285,8 +285,8 @@ impl Lighting {
     fn of_light(
         &self,
         light: usize,
-        source: &Light,
-        material: &Material,
+        source: &LightSource,
+        material: &Reflection,
         position: DVec4,
         normal: DVec3,
     ) -> Step {
@@ -323,7 +323,7 @@ fn toward(light: DVec4, vertex: DVec4) -> DVec3 {
     if light.w == 0.0 { light.truncate() } else { place(light) - place(vertex) }
 }
 
-fn spot(light: &Light, l: DVec3) -> f64 {
+fn spot(light: &LightSource, l: DVec3) -> f64 {
     if light.spot_cutoff == 180.0 {
         return 1.0;
     }

@@ -315,7 +315,7 @@ fn light(command: &Command, p: &mut Pipeline) -> Result<()> {
                 index: *number,
                 count: MAX_LIGHTS,
             })?;
-            light.as_ref().map_or(Ok(()), super::Light::check)?;
+            light.as_ref().map_or(Ok(()), super::LightSource::check)?;
             *place = light.map(|light| light.transformed(&p.model_view));
         }
         Command::LightModel(model) if !model.ambient.is_finite() => {

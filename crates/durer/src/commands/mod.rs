@@ -11,13 +11,13 @@
 //! the whole line that are within the viewport.
 //!
 //! ```
-//! use durer::commands::{Command, DisplayLists, Pipeline, Primitive, Vertex, execute};
+//! use durer::commands::{Command, DisplayLists, Pipeline, Primitive, CornerVertex, execute};
 //! use durer::math::{DVec3, Vec4};
 //! use durer::target::Framebuffer;
 //!
 //! let mut lists = DisplayLists::default();
 //! let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
-//! let corner = |(x, y)| Vertex::from(DVec3::new(x, y, 0.0));
+//! let corner = |(x, y)| CornerVertex::from(DVec3::new(x, y, 0.0));
 //! let triangle = lists.record(vec![Command::Draw(Primitive::Triangles, corners.map(corner).into())]);
 //! let mut target = Framebuffer::new(8, 8);
 //! let red = Command::Color(Vec4::new(1.0, 0.0, 0.0, 1.0));
@@ -38,17 +38,17 @@ mod state;
 mod texture;
 
 pub use bitmap::Bitmap;
-pub use evaluator::{Curve, Patch};
+pub use evaluator::{BezierPatch, SpaceCurve};
 pub use lighting::{
-    ColorMaterial, Light, LightModel, Lighting, MAX_LIGHTS, Material, MaterialFace, ShadeModel,
-    Step as LightStep,
+    ColorMaterial, LightModel, LightSource, LightingState, MAX_LIGHTS, MaterialFace, Reflection,
+    ShadeModel, Step as LightStep,
 };
 pub use list::{
     DisplayLists, INFO, ListId, MAX_COMMANDS, MAX_NESTING, Step, execute, execute_traced, replay,
 };
 pub use pixels::{PixelBlock, PixelPlane, read_pixels};
 pub use state::{CullFace, MAX_STACK, Pipeline, RasterPosition};
-pub use texture::{Texture, TextureFunction};
+pub use texture::{BoundTexture, TextureFunction};
 
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
 use crate::math::{DMat4, DVec2, DVec3, Vec4};
@@ -70,7 +70,7 @@ pub enum Primitive {
 
 /// A corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Vertex {
+pub struct CornerVertex {
     /// Position in object space, which the model-view matrix transforms to eye space.
     pub position: DVec3,
     /// Linear RGBA with straight alpha; `None` = the pipeline's colour.
@@ -83,7 +83,7 @@ pub struct Vertex {
     pub tex_coord: Option<DVec2>,
 }
 
-impl From<DVec3> for Vertex {
+impl From<DVec3> for CornerVertex {
     fn from(position: DVec3) -> Self {
         Self { position, color: None, index: None, normal: None, tex_coord: None }
     }
@@ -127,11 +127,11 @@ pub enum Command {
     /// Turns lighting on or off.
     Lighting(bool),
     /// Sets a light, or turns it off; its position and direction are transformed by the current model-view matrix.
-    Light(usize, Option<Light>),
+    Light(usize, Option<LightSource>),
     /// Sets ambient light, viewer and sides.
     LightModel(LightModel),
     /// Sets the material of a side.
-    Material(MaterialFace, Material),
+    Material(MaterialFace, Reflection),
     /// Sets the property of both materials that follows the colour of vertices.
     ColorMaterial(Option<ColorMaterial>),
     /// Sets whether normals are made unit length after their transformation.
@@ -139,9 +139,9 @@ pub enum Command {
     /// Sets the interpolation of colours.
     ShadeModel(ShadeModel),
     /// Sets the texture of all fragments, or none.
-    Texture(Option<Texture>),
+    Texture(Option<BoundTexture>),
     /// Sets the raster position, at which pixels are drawn: a vertex, transformed like all vertices.
-    RasterPosition(Vertex),
+    RasterPosition(CornerVertex),
     /// Sets the width and height of a drawn pixel.
     PixelZoom(DVec2),
     /// Sets the side or diameter of points, in pixels.
@@ -163,11 +163,11 @@ pub enum Command {
     /// Sets all fragment operations.
     Fragments(FragmentState),
     /// Draws a primitive.
-    Draw(Primitive, Vec<Vertex>),
+    Draw(Primitive, Vec<CornerVertex>),
     /// Evaluates a curve at this many equal steps of its parameter and draws them as a line strip.
-    EvaluateCurve(Curve, u32),
+    EvaluateCurve(SpaceCurve, u32),
     /// Evaluates a patch at this many equal steps in both directions and draws its triangles.
-    EvaluatePatch(Patch, [u32; 2]),
+    EvaluatePatch(BezierPatch, [u32; 2]),
     /// Replays a display list with the current state; its changes of the state stay.
     Call(ListId),
 }

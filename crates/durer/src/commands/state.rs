@@ -1,7 +1,7 @@
 //! The state that commands change.
 
-use super::lighting::Lighting;
-use super::texture::Texture;
+use super::lighting::LightingState;
+use super::texture::BoundTexture;
 use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
 use crate::math::{DMat4, DVec2, DVec3, Vec4};
 
@@ -60,9 +60,9 @@ pub struct Pipeline {
     /// Texture coordinates of vertices without any; at first 0.
     pub tex_coord: DVec2,
     /// Lights, materials, and the interpolation of colours; at first off, and smooth.
-    pub lighting: Lighting,
+    pub lighting: LightingState,
     /// Texture of all fragments; at first none.
-    pub texture: Option<Texture>,
+    pub texture: Option<BoundTexture>,
     /// Place at which pixels are drawn; `None` if it was clipped away.
     pub raster: Option<RasterPosition>,
     /// Width and height of a drawn pixel, in pixels; negative to mirror; initially 1.
@@ -97,7 +97,7 @@ impl Default for Pipeline {
             index: 1.0,
             normal: DVec3::Z,
             tex_coord: DVec2::ZERO,
-            lighting: Lighting::default(),
+            lighting: LightingState::default(),
             texture: None,
             raster: Some(RasterPosition::default()),
             pixel_zoom: DVec2::ONE,

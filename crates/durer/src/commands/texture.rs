@@ -3,7 +3,7 @@
 //! M. Segal, K. Akeley, *The OpenGL Graphics System: A Specification* 2.1 (2006), 3.8.13, for images with alpha.
 
 use crate::math::{DVec2, DVec4, Vec4};
-use crate::scene::{Filter, Image, MipFilter, Sampler};
+use crate::scene::{Image, MipFilter, Sampler, TextureFilter};
 use crate::shade::PreparedTexture;
 use crate::shade::texture::Usage;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub enum TextureFunction {
 /// A texture in use. Texture coordinates (0, 0) are the corner of the image's first row and column, (1, 1) that of the
 /// last ones.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Texture {
+pub struct BoundTexture {
     /// Image, 8-bit sRGB with straight alpha.
     pub image: Arc<Image>,
     /// Filters, and extension outside 0 … 1. Levels are computed for each drawing command: O(texels).
@@ -38,10 +38,11 @@ pub struct Texture {
     pub color: Vec4,
 }
 
-impl Texture {
+impl BoundTexture {
     /// Creates a texture with OpenGL's magnification filter, without levels, that multiplies colours.
     pub fn new(image: Image) -> Self {
-        let sampler = Sampler { min: Filter::Linear, mip: MipFilter::None, ..Sampler::default() };
+        let sampler =
+            Sampler { min: TextureFilter::Linear, mip: MipFilter::None, ..Sampler::default() };
         let (function, color) = (TextureFunction::default(), Vec4::ZERO);
         Self { image: Arc::new(image), sampler, function, color }
     }
@@ -55,7 +56,7 @@ impl Texture {
 /// A texture with its levels.
 pub(super) struct Prepared<'a> {
     texels: PreparedTexture<'a>,
-    texture: &'a Texture,
+    texture: &'a BoundTexture,
 }
 
 impl Prepared<'_> {

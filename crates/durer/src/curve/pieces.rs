@@ -2,7 +2,7 @@
 
 use super::{Path, PathElement, flatten};
 use crate::math::DVec2;
-use crate::target::{Arc, Curve, Piece};
+use crate::target::{Curve, CurvePiece, EllipticArc};
 use std::f64::consts::FRAC_PI_2;
 
 /// No arc becomes more cubic curves: a quarter turn of 64 of them is exact to the last bit.
@@ -14,15 +14,17 @@ pub fn path(curve: &Curve, tolerance: f64) -> Path {
     path.push(PathElement::MoveTo(curve.start));
     for piece in &curve.pieces {
         match *piece {
-            Piece::Line(end) => {
+            CurvePiece::Line(end) => {
                 path.push(PathElement::LineTo(end));
             }
-            Piece::Cubic(a, b, end) => {
+            CurvePiece::Cubic(a, b, end) => {
                 path.cubic_to(a, b, end);
             }
-            Piece::Arc(arc, end) => cubics(&arc, end, tolerance).iter().for_each(|[a, b, end]| {
-                path.cubic_to(*a, *b, *end);
-            }),
+            CurvePiece::Arc(arc, end) => {
+                cubics(&arc, end, tolerance).iter().for_each(|[a, b, end]| {
+                    path.cubic_to(*a, *b, *end);
+                })
+            }
         }
     }
     if curve.closed {
@@ -36,7 +38,7 @@ pub fn path(curve: &Curve, tolerance: f64) -> Path {
 ///
 /// M. Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991: with control points on the tangents, 4/3 ·
 /// tan(θ/4) radii from the ends, a cubic leaves an arc over an angle θ by less than 2/27 · sin⁶(θ/4) / cos²(θ/4) radii.
-pub fn cubics(arc: &Arc, end: DVec2, tolerance: f64) -> Vec<[DVec2; 3]> {
+pub fn cubics(arc: &EllipticArc, end: DVec2, tolerance: f64) -> Vec<[DVec2; 3]> {
     let radius = arc.axis.length();
     let error = |count: u32| {
         let (sin, cos) = libm::sincos(arc.turn.abs() / f64::from(4 * count));
@@ -67,9 +69,9 @@ pub fn points(curve: &Curve, tolerance: f64) -> Vec<DVec2> {
 
 /// Returns the length of a curve, to about a part in a million.
 pub fn length(curve: &Curve) -> f64 {
-    let piece = |(start, piece): (DVec2, &Piece)| match piece {
-        Piece::Line(end) => start.distance(*end),
-        Piece::Arc(arc, _) if arc.is_circular() => arc.axis.length() * arc.turn.abs(),
+    let piece = |(start, piece): (DVec2, &CurvePiece)| match piece {
+        CurvePiece::Line(end) => start.distance(*end),
+        CurvePiece::Arc(arc, _) if arc.is_circular() => arc.axis.length() * arc.turn.abs(),
         _ => {
             let alone = Curve { start, pieces: vec![*piece], closed: false };
             let across = start.distance(piece.end()).max(reach(start, piece));
@@ -80,11 +82,11 @@ pub fn length(curve: &Curve) -> f64 {
 }
 
 /// Returns an upper bound of a piece's distance from its start, at most a few times too large.
-fn reach(start: DVec2, piece: &Piece) -> f64 {
+fn reach(start: DVec2, piece: &CurvePiece) -> f64 {
     match piece {
-        Piece::Line(end) => start.distance(*end),
-        Piece::Arc(arc, _) => 2.0 * arc.axis.length(),
-        Piece::Cubic(a, b, _) => start.distance(*a).max(start.distance(*b)),
+        CurvePiece::Line(end) => start.distance(*end),
+        CurvePiece::Arc(arc, _) => 2.0 * arc.axis.length(),
+        CurvePiece::Cubic(a, b, _) => start.distance(*a).max(start.distance(*b)),
     }
 }
 
@@ -97,7 +99,8 @@ pub fn at_corners(curve: &Curve, cosine: f64) -> Vec<Curve> {
         let (come, go) = (ways[(i + count - 1) % count][1], ways[i][0]);
         come.normalize_or_zero().dot(go.normalize_or_zero()) < cosine
     };
-    let all: Vec<(DVec2, Piece)> = curve.iter().map(|(start, piece)| (start, *piece)).collect();
+    let all: Vec<(DVec2, CurvePiece)> =
+        curve.iter().map(|(start, piece)| (start, *piece)).collect();
     let first = if curve.closed { (0..count).find(|i| is_corner(*i)) } else { Some(0) };
     let Some(first) = first else { return vec![curve.clone()] };
     let mut parts: Vec<Curve> = Vec::new();
@@ -124,8 +127,8 @@ pub fn arcs(curve: &Curve, tolerance: f64) -> Vec<(DVec2, f64)> {
     let mut arcs = Vec::new();
     for (start, piece) in curve.iter() {
         match *piece {
-            Piece::Line(end) => arcs.push((end, 0.0)),
-            Piece::Arc(arc, end) if arc.is_circular() => {
+            CurvePiece::Line(end) => arcs.push((end, 0.0)),
+            CurvePiece::Arc(arc, end) if arc.is_circular() => {
                 let parts = (arc.turn.abs() / (FRAC_PI_2 * 1.5)).ceil().max(1.0) as u32;
                 let step = arc.turn / f64::from(parts);
                 let bulge = libm::tan(step * 0.25);
@@ -141,10 +144,10 @@ pub fn arcs(curve: &Curve, tolerance: f64) -> Vec<(DVec2, f64)> {
 /// A point of a curve and its unit direction there.
 type Place = (DVec2, DVec2);
 
-fn place(start: DVec2, piece: &Piece, t: f64) -> Place {
+fn place(start: DVec2, piece: &CurvePiece, t: f64) -> Place {
     let (p, way) = match *piece {
-        Piece::Line(end) => (start.lerp(end, t), end - start),
-        Piece::Arc(arc, end) => {
+        CurvePiece::Line(end) => (start.lerp(end, t), end - start),
+        CurvePiece::Arc(arc, end) => {
             let angle = arc.start + arc.turn * t;
             let p = if t <= 0.0 {
                 start
@@ -155,7 +158,7 @@ fn place(start: DVec2, piece: &Piece, t: f64) -> Place {
             };
             (p, arc.way(angle))
         }
-        Piece::Cubic(a, b, end) => {
+        CurvePiece::Cubic(a, b, end) => {
             let (ab, bc, cd) = (start.lerp(a, t), a.lerp(b, t), b.lerp(end, t));
             let (left, right) = (ab.lerp(bc, t), bc.lerp(cd, t));
             let ends = piece.ways(start);
@@ -172,7 +175,7 @@ fn place(start: DVec2, piece: &Piece, t: f64) -> Place {
     (p, way.normalize_or_zero())
 }
 
-fn pairs(start: DVec2, piece: &Piece, tolerance: f64, arcs: &mut Vec<(DVec2, f64)>) {
+fn pairs(start: DVec2, piece: &CurvePiece, tolerance: f64, arcs: &mut Vec<(DVec2, f64)>) {
     let at = |t: f64| place(start, piece, t);
     // The part of the curve that is next, last.
     let mut parts = vec![(0.5, 1.0, 1), (0.0, 0.5, 1)];

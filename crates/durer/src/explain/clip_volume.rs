@@ -9,7 +9,7 @@ use super::wedges::{
     ACCEPTED, BORDER, CLIP_SPACE, DROPPED, REJECTED, begun, clip_space, number, seen, wedge,
 };
 use super::words::{Caption, Template, Value, Word};
-use crate::clip::outcode::{DepthRange, Outcode};
+use crate::clip::outcode::{ClipDepths, Outcode};
 use crate::clip::place::{self, ClipPlace};
 use crate::clip::volume::{self, ClipVertex, Step};
 use crate::math::{DMat4, DVec3, DVec4};
@@ -192,7 +192,7 @@ fn at_place(lesson: &Lesson, input: &Input, cap: usize) -> Result<Frames> {
     let missing = || Error::parameter("input", "without a face", FACE.en);
     let corners = faces.iter().find(|face| face.len() > 2).ok_or_else(missing)?;
     let place: ClipPlace = lesson.name.parse()?;
-    let (matrix, depth) = (projection(), DepthRange::default());
+    let (matrix, depth) = (projection(), ClipDepths::default());
     let polygon: Vec<(DVec3, ())> = corners.iter().map(|&p| (p, ())).collect();
     let steps = record(cap, |t| Ok(place::clip(place, &polygon, &matrix, depth, t)))?;
     let start: Vec<DVec4> = match place {

@@ -7,7 +7,7 @@ use super::lesson::{Example, Lesson};
 use super::picture::{Look, Picture};
 use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
-use crate::clip::crossings::bentley_ottmann::{INFO, Place, Step, crossings};
+use crate::clip::crossings::bentley_ottmann::{INFO, Neighbours, Step, crossings};
 use crate::clip::crossings::{Crossing, Options};
 use crate::clip::line::Segment;
 use crate::math::DVec2;
@@ -203,9 +203,9 @@ impl State {
                 self.tested = Some(*pair);
                 let [a, b] = pair.map(name);
                 let place = match place {
-                    Place::Around => Word::new("Now neighbours,", "Als neue Nachbarn"),
-                    Place::Below => Word::new("Below the point,", "Unterhalb des Punkts"),
-                    Place::Above => Word::new("Above the point,", "Oberhalb des Punkts"),
+                    Neighbours::Around => Word::new("Now neighbours,", "Als neue Nachbarn"),
+                    Neighbours::Below => Word::new("Below the point,", "Unterhalb des Punkts"),
+                    Neighbours::Above => Word::new("Above the point,", "Oberhalb des Punkts"),
                 };
                 let [place, a, b] = [("place", place.into()), ("a", a), ("b", b)];
                 let Some(meet) = *meet else { return APART.with([place, a, b]) };

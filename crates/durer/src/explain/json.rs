@@ -1,7 +1,7 @@
 //! Runs as JSON (RFC 8259), written by hand: the library knows no format of files otherwise.
 
 use super::lesson::Lesson;
-use super::picture::{Look, Mark, Picture, Shape};
+use super::picture::{Look, Mark, MarkShape, Picture};
 use super::replay::Frame;
 use super::table::Table;
 use super::words::{Language, Value};
@@ -130,17 +130,17 @@ fn picture(picture: &Picture, language: Language) -> String {
 fn mark(mark: &Mark, language: Language) -> String {
     let points = |all: &[DVec2]| array(all.iter().map(|&p| point(p)));
     let (shape, mut members) = match &mark.shape {
-        Shape::Chain(all) => ("chain", vec![member("points", &points(all))]),
-        Shape::Rings(all) => {
+        MarkShape::Chain(all) => ("chain", vec![member("points", &points(all))]),
+        MarkShape::Rings(all) => {
             ("rings", vec![member("rings", &array(all.iter().map(|ring| points(ring))))])
         }
-        Shape::Dot(p) => ("dot", vec![member("at", &point(*p))]),
-        Shape::Arrow(ends) => ("arrow", vec![member("points", &points(ends))]),
-        Shape::Label { at, by, text } => {
+        MarkShape::Dot(p) => ("dot", vec![member("at", &point(*p))]),
+        MarkShape::Arrow(ends) => ("arrow", vec![member("points", &points(ends))]),
+        MarkShape::Label { at, by, text } => {
             let text = member("text", &string(&text.text(language)));
             ("label", vec![member("at", &point(*at)), member("by", &point(*by)), text])
         }
-        Shape::Cell { at, color, text } => {
+        MarkShape::Cell { at, color, text } => {
             let at = member("at", &array(at.map(|x| x.to_string())));
             let color = color.map(|rgb| member("color", &array(rgb.map(|c| c.to_string()))));
             let text = member("text", &string(&text.text(language)));

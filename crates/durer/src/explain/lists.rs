@@ -8,8 +8,8 @@ use super::picture::{Look, Picture};
 use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::commands::{
-    Command, DisplayLists, INFO, ListId, MAX_NESTING, Pipeline, Primitive, Step, Vertex, execute,
-    execute_traced,
+    Command, CornerVertex, DisplayLists, INFO, ListId, MAX_NESTING, Pipeline, Primitive, Step,
+    execute, execute_traced,
 };
 use crate::math::{DMat4, DVec2, DVec3, Rect, Vec4};
 use crate::target::Framebuffer;
@@ -173,7 +173,7 @@ const WHITE: Vec4 = Vec4::ONE;
 /// Returns the ring as a closed line.
 fn outline(ring: &[DVec2]) -> Command {
     let closed = ring.iter().chain(ring.first());
-    Command::Draw(Primitive::LineStrip, closed.map(|p| Vertex::from(p.extend(0.0))).collect())
+    Command::Draw(Primitive::LineStrip, closed.map(|p| CornerVertex::from(p.extend(0.0))).collect())
 }
 
 fn moved(by: DVec2) -> Command {

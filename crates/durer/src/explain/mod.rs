@@ -62,16 +62,16 @@ mod wedges;
 mod without;
 mod words;
 
-pub use faults::{Fault, faults, record_with_fault};
+pub use faults::{LessonFault, faults, record_with_fault};
 pub use input::{Figure, Grid, Input, MAX_POINTS, Options};
 pub use json::{frame_json, json, string as json_string};
 pub use lesson::{Example, Lesson};
 pub use names::title;
 pub use operations::{Operations, Tally};
-pub use picture::{Look, Mark, Picture, Shape};
+pub use picture::{Look, Mark, MarkShape, Picture};
 pub use replay::{Frame, Frames};
 pub use svg::{picture, picture_of_size, sheet, svg};
-pub use table::{Cell, Row, Table};
+pub use table::{Row, Table, TableCell};
 pub use without::WITHOUT_LESSON;
 pub use words::{Caption, Language, Template, Value, Word};
 
@@ -80,19 +80,19 @@ use crate::{Result, clip, commands, curve, fragment, raster, shade, view, visibi
 
 /// Lessons of one family with their title.
 #[derive(Debug, Clone, Copy)]
-pub struct Family {
+pub struct LessonFamily {
     /// Title.
     pub title: Word,
     /// Lessons, the simplest first.
     pub lessons: &'static [Lesson],
 }
 
-const fn family(en: &'static str, de: &'static str, lessons: &'static [Lesson]) -> Family {
-    Family { title: Word::new(en, de), lessons }
+const fn family(en: &'static str, de: &'static str, lessons: &'static [Lesson]) -> LessonFamily {
+    LessonFamily { title: Word::new(en, de), lessons }
 }
 
 /// Families of lessons in the plane, in the order of the pipeline.
-pub const PLANE: &[Family] = &[
+pub const PLANE: &[LessonFamily] = &[
     family("Curves", "Kurven", curves::LESSONS),
     family("Clipping lines", "Linien clippen", clip_lines::LESSONS),
     family("Crossings of segments", "Schnittpunkte von Strecken", &[crossings::LESSON]),
@@ -108,7 +108,7 @@ pub const PLANE: &[Family] = &[
 ];
 
 /// Families of lessons in space, in the order of the pipeline, up to visible surfaces and lines.
-pub const SPACE: &[Family] = &[
+pub const SPACE: &[LessonFamily] = &[
     family("Clipping in space", "Clippen im Raum", clip_volume::LESSONS),
     family(
         "Culling, picking and warping",
@@ -123,12 +123,13 @@ pub const SPACE: &[Family] = &[
 ];
 
 /// Families of lessons about visible surfaces and lines.
-pub const VISIBILITY: &[Family] = &[family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS)];
+pub const VISIBILITY: &[LessonFamily] =
+    &[family("Hidden surfaces", "Verdeckte Flächen", faces::LESSONS)];
 
 /// All lessons by families: those of [`PLANE`], then those of [`SPACE`] and of [`VISIBILITY`].
-pub const FAMILIES: &[Family] = &joined::<{ PLANE.len() + SPACE.len() + VISIBILITY.len() }>();
+pub const FAMILIES: &[LessonFamily] = &joined::<{ PLANE.len() + SPACE.len() + VISIBILITY.len() }>();
 
-const fn joined<const N: usize>() -> [Family; N] {
+const fn joined<const N: usize>() -> [LessonFamily; N] {
     let mut all = [PLANE[0]; N];
     let parts = [PLANE, SPACE, VISIBILITY];
     let (mut part, mut i) = (0, 0);
@@ -162,7 +163,7 @@ pub fn lesson(name: &str) -> Result<&'static Lesson> {
 /// # Errors
 /// As [`lesson()`].
 pub fn find(
-    families: impl Iterator<Item = &'static Family> + Clone,
+    families: impl Iterator<Item = &'static LessonFamily> + Clone,
     name: &str,
 ) -> Result<&'static Lesson> {
     let lessons = families.flat_map(|family| family.lessons);

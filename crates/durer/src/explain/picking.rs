@@ -13,7 +13,7 @@ use crate::math::DVec2;
 use crate::scene::{Instance, Mesh};
 use crate::sorting::CompactSort;
 use crate::trace::PseudocodeLine;
-use crate::view::pick::{Area, Hit, INFO, Step, pick_traced};
+use crate::view::pick::{Hit, INFO, PickArea, Step, pick_traced};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -145,7 +145,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let point = (size / 2.0).floor() + 0.5;
     let on_screen = DVec2::new(point.x, size.y - point.y);
     let steps = record(cap, |t| {
-        pick_traced(&model, &view, Area::Point(on_screen), t);
+        pick_traced(&model, &view, PickArea::Point(on_screen), t);
         Ok(())
     })?;
     let mut state = State { scene, triangles, point, hits: Vec::new() };

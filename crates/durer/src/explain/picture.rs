@@ -28,7 +28,7 @@ pub enum Look {
 
 /// Shape of a mark, in the coordinates of its picture.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum MarkShape {
     /// Points joined by lines.
     Chain(Vec<DVec2>),
     /// Closed curves whose inside, by the even-odd rule, is an area.
@@ -62,7 +62,7 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// Its shape and place.
-    pub shape: Shape,
+    pub shape: MarkShape,
     /// Its part in the picture.
     pub look: Look,
 }
@@ -108,23 +108,23 @@ impl Picture {
     }
 
     /// Adds a mark on top.
-    pub(crate) fn add(&mut self, shape: Shape, look: Look) {
+    pub(crate) fn add(&mut self, shape: MarkShape, look: Look) {
         self.marks.push(Mark { shape, look });
     }
 
     /// Adds points joined by lines.
     pub(crate) fn chain(&mut self, points: impl Into<Vec<DVec2>>, look: Look) {
-        self.add(Shape::Chain(points.into()), look);
+        self.add(MarkShape::Chain(points.into()), look);
     }
 
     /// Adds a closed curve.
     pub(crate) fn ring(&mut self, points: impl Into<Vec<DVec2>>, look: Look) {
-        self.add(Shape::Rings(vec![points.into()]), look);
+        self.add(MarkShape::Rings(vec![points.into()]), look);
     }
 
     /// Adds closed curves that bound one area.
     pub(crate) fn rings(&mut self, rings: &[Vec<DVec2>], look: Look) {
-        self.add(Shape::Rings(rings.to_vec()), look);
+        self.add(MarkShape::Rings(rings.to_vec()), look);
     }
 
     /// Adds a rectangle as a closed chain, whose inside stays free.
@@ -136,17 +136,17 @@ impl Picture {
 
     /// Adds a dot.
     pub(crate) fn dot(&mut self, at: DVec2, look: Look) {
-        self.add(Shape::Dot(at), look);
+        self.add(MarkShape::Dot(at), look);
     }
 
     /// Adds a line with a head at its end.
     pub(crate) fn arrow(&mut self, from: DVec2, to: DVec2, look: Look) {
-        self.add(Shape::Arrow([from, to]), look);
+        self.add(MarkShape::Arrow([from, to]), look);
     }
 
     /// Adds a text whose middle is moved from a point by pixels to the right and down.
     pub(crate) fn label(&mut self, at: DVec2, by: (f64, f64), text: impl Into<Value>) {
-        self.add(Shape::Label { at, by: by.into(), text: text.into() }, Look::Window);
+        self.add(MarkShape::Label { at, by: by.into(), text: text.into() }, Look::Window);
     }
 
     /// Adds a dot with a name above it.
@@ -157,12 +157,12 @@ impl Picture {
 
     /// Adds a pixel in the light colour of a look.
     pub(crate) fn cell(&mut self, at: [i32; 2], text: impl Into<Value>, look: Look) {
-        self.add(Shape::Cell { at, color: None, text: text.into() }, look);
+        self.add(MarkShape::Cell { at, color: None, text: text.into() }, look);
     }
 
     /// Adds a pixel in a colour.
     pub(crate) fn colored(&mut self, at: [i32; 2], color: [u8; 3], text: impl Into<Value>) {
-        self.add(Shape::Cell { at, color: Some(color), text: text.into() }, Look::Pale);
+        self.add(MarkShape::Cell { at, color: Some(color), text: text.into() }, Look::Pale);
     }
 }
 

@@ -20,7 +20,7 @@ use crate::view::View;
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::scan_line_z;
-use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::setup::TriangleFilter;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -190,7 +190,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
 
 /// Returns the depths that the light sees: it looks along −z, in parallel rays.
 fn depths(model: &crate::scene::Scene, view: &View) -> Result<Pixels<f32>> {
-    let surfaces = SurfaceInput::new(model, view, Filter::new(Cull::None, 0))?;
+    let surfaces = SurfaceInput::new(model, view, TriangleFilter::new(Cull::None, 0))?;
     let lights = PreparedLights::of(model, view.camera());
     let mut target = Framebuffer::new(view.width(), view.height()).with_depth();
     let options = scan_line_z::Options::default();

@@ -17,12 +17,12 @@ pub struct Row {
     /// Name of the row, by which the row of the step before is found.
     pub name: Value,
     /// Cells from left to right, as many as there are.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<TableCell>,
 }
 
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cell {
+pub struct TableCell {
     /// Value that it shows.
     pub value: Value,
     /// True if the step before showed another value here, or none.
@@ -37,7 +37,7 @@ impl Table {
 
     /// Adds a row at the bottom.
     pub(crate) fn row(&mut self, name: impl Into<Value>, cells: impl IntoIterator<Item = Value>) {
-        let cells = cells.into_iter().map(|value| Cell { value, changed: false }).collect();
+        let cells = cells.into_iter().map(|value| TableCell { value, changed: false }).collect();
         self.rows.push(Row { name: name.into(), cells });
     }
 

@@ -9,7 +9,7 @@ use super::table::Table;
 use super::words::{Caption, Template, Value, Word};
 use crate::Result;
 use crate::clip::polygon::Shapes;
-use crate::clip::polygon::validity::{Fault, Flaw, INFO, Relation, Step, flaws_traced};
+use crate::clip::polygon::validity::{EdgeRelation, Fault, Flaw, INFO, Step, flaws_traced};
 use crate::math::DVec2;
 use crate::trace::PseudocodeLine;
 
@@ -298,19 +298,19 @@ impl State {
         }
     }
 
-    fn compared(&mut self, edges: [[usize; 2]; 2], relation: Relation) -> Caption {
+    fn compared(&mut self, edges: [[usize; 2]; 2], relation: EdgeRelation) -> Caption {
         let [p, q] = edges.map(edge_name);
         let (p, q) = (("p", p), ("q", q));
         match relation {
-            Relation::Apart => APART.with([p, q]),
-            Relation::Neighbours => NEIGHBOURS.with([p, q]),
-            Relation::Touch(at) => {
+            EdgeRelation::Apart => APART.with([p, q]),
+            EdgeRelation::Neighbours => NEIGHBOURS.with([p, q]),
+            EdgeRelation::Touch(at) => {
                 if !self.touches.contains(&at) {
                     self.touches.push(at);
                 }
                 TOUCHES.with([p, q, ("at", at.into())])
             }
-            Relation::Flaw(flaw) => {
+            EdgeRelation::Flaw(flaw) => {
                 if !self.flaws.contains(&flaw) {
                     self.flaws.push(flaw);
                 }

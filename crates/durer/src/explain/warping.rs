@@ -14,11 +14,11 @@ use crate::shade::PreparedLights;
 use crate::target::{Framebuffer, Pixels};
 use crate::trace::{NoTrace, PseudocodeLine};
 use crate::view::View;
-use crate::view::warp::{INFO, Options, Source, Step, warp};
+use crate::view::warp::{DepthPicture, INFO, Options, Step, warp};
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::scan_line_z;
-use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::setup::TriangleFilter;
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -127,7 +127,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let (model, _) = triangles.prepared(&scene)?;
     let camera = row_camera(&scene, &triangles, PIXELS);
     let view = View::new(camera, PIXELS, 1)?;
-    let surfaces = SurfaceInput::new(&model, &view, Filter::new(Cull::None, 0))?;
+    let surfaces = SurfaceInput::new(&model, &view, TriangleFilter::new(Cull::None, 0))?;
     let lights = PreparedLights::of(&model, view.camera());
     let mut target = Framebuffer::new(PIXELS, 1).with_depth().with_items();
     let look = scan_line_z::Options::default();
@@ -145,7 +145,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let old = Pixels::from_data(PIXELS, 1, faces.iter().map(code).collect())?;
     let aside = DVec3::X * f64::from(scene.raster.columns) * BESIDE;
     let new = Camera { eye: camera.eye + aside, target: camera.target + aside, ..camera };
-    let sources = [Source { color: &old, depth: &depth, camera }];
+    let sources = [DepthPicture { color: &old, depth: &depth, camera }];
     let steps = record(cap, |t| warp(&sources, &new, [PIXELS, 1], &Options::default(), t))?;
     let new = vec![None; PIXELS as usize];
     let mut state = State { old, faces, camera, new, now: None, written: None };

@@ -2,7 +2,7 @@
 //! look-up table of J. Kajiya, I. Sutherland, E. Cheadle, *A Random-Access Video Frame Buffer*, 1975).
 //!
 //! ```
-//! use durer::commands::{Command, DisplayLists, Pipeline, Primitive, Vertex, execute};
+//! use durer::commands::{Command, DisplayLists, Pipeline, Primitive, CornerVertex, execute};
 //! use durer::fragment::Palette;
 //! use durer::math::{DVec3, Vec4};
 //! use durer::target::Framebuffer;
@@ -10,7 +10,7 @@
 //! // Indices 16 … 31 go from black to white; the corners' indices are interpolated between them.
 //! let mut palette = Palette::default();
 //! palette.ramp(16..=31, Vec4::new(0.0, 0.0, 0.0, 1.0), Vec4::ONE);
-//! let corner = |x, y, index| Vertex { index: Some(index), ..Vertex::from(DVec3::new(x, y, 0.0)) };
+//! let corner = |x, y, index| CornerVertex { index: Some(index), ..CornerVertex::from(DVec3::new(x, y, 0.0)) };
 //! let corners = vec![corner(-1., -1., 16.), corner(1., -1., 31.), corner(1., 1., 31.), corner(-1., 1., 16.)];
 //! let mut target = Framebuffer::new(16, 1).with_indices();
 //! let square = Command::Draw(Primitive::Polygon, corners);

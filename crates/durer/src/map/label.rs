@@ -193,7 +193,7 @@ fn middle(polygon: Polygon<'_>, wide: f64) -> Option<DVec2> {
 
 /// Counts of placed labels.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
-pub struct Placed {
+pub struct PlacedLabels {
     /// Numbers of labels of each layer that found room, and that did not.
     pub counts: Vec<(u64, u64)>,
     /// Letters that the fonts of their labels do not have.
@@ -217,7 +217,7 @@ pub(super) fn draw(
     labels: Vec<Label>,
     styles: &[&Style],
     fonts: &[Font<'_>],
-) -> Result<Placed> {
+) -> Result<PlacedLabels> {
     let no_font = || Error::parameter("fonts", 0, "at least one font for labels");
     let mut planned = Vec::new();
     let are_many = labels.len() > MANY;
@@ -243,7 +243,7 @@ pub(super) fn draw(
     let bits = |marker: &Rect| [marker.min(), marker.max()].map(|p| [p.x, p.y].map(f64::to_bits));
     let markers = ground.markers.iter().filter(|marker| reserved.insert(bits(marker)));
     markers.for_each(|marker| placer.reserve(*marker));
-    let mut drawn = Placed { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
+    let mut drawn = PlacedLabels { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
     for layer in planned.chunk_by(|a, b| a.label.layer == b.label.layer) {
         let style = styles[layer[0].label.layer];
         let held = layer.iter().take_while(|planned| planned.fit == Fit::Held).count();

@@ -36,7 +36,7 @@ mod joined;
 mod label;
 mod places;
 
-pub use label::{Anchor, Label, Placed};
+pub use label::{Anchor, Label, PlacedLabels};
 
 use crate::Result;
 use crate::curve::text::Font;
@@ -118,7 +118,7 @@ impl Default for Style {
 
 /// Counts of a layer: parts that touch the viewport.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct LayerCounts {
     /// Points.
     pub points: u64,
     /// Lines.
@@ -148,7 +148,7 @@ pub struct Map<T = Canvas> {
     screen: WindowToViewport,
     /// Viewport.
     seen: Rect,
-    counts: Counts,
+    counts: LayerCounts,
     /// Areas of finished layers, which labels beside theirs avoid.
     lands: Vec<Contours>,
     /// Areas of the current layer.
@@ -191,7 +191,7 @@ impl<T: PaintTarget> Map<T> {
             target,
             screen,
             seen,
-            counts: Counts::default(),
+            counts: LayerCounts::default(),
             lands: Vec::new(),
             land: Contours::new(),
             joined: None,
@@ -208,8 +208,8 @@ impl<T: PaintTarget> Map<T> {
         &mut self,
         style: &Style,
         geometries: impl IntoIterator<Item = &'a Geometry>,
-    ) -> Result<Counts> {
-        self.counts = Counts::default();
+    ) -> Result<LayerCounts> {
+        self.counts = LayerCounts::default();
         let fade = style.opacity < 1.0;
         if fade {
             self.target.push_group();
@@ -242,7 +242,7 @@ impl<T: PaintTarget> Map<T> {
         labels: Vec<Label>,
         styles: &[&Style],
         fonts: &[Font<'_>],
-    ) -> Result<Placed> {
+    ) -> Result<PlacedLabels> {
         let land = Land::new(self.lands.clone(), &self.seen)?;
         let ground = Ground { seen: &self.seen, land: &land, markers: &self.marked };
         label::draw(&mut self.target, &ground, labels, styles, fonts)

@@ -6,7 +6,7 @@ use crate::curve::fit::{self, Fitted, Options, Polyline};
 use crate::math::DVec2;
 use crate::parallel;
 use crate::target::drawing::Region;
-use crate::target::{Curve, Piece};
+use crate::target::{Curve, CurvePiece};
 use std::collections::BTreeMap;
 
 /// Returns the borders of each region as curves, in millimetres on paper, all within `tolerance` millimetres, or as an
@@ -287,7 +287,7 @@ impl Chains {
         let again = ids.first().filter(|_| self.all[link.chain].1);
         let mut points = ids.iter().chain(again).map(|id| network.place(*id));
         let start = points.next()?;
-        Some(Curve { start, pieces: points.map(Piece::Line).collect(), closed: false })
+        Some(Curve { start, pieces: points.map(CurvePiece::Line).collect(), closed: false })
     }
 }
 
@@ -338,14 +338,19 @@ impl RowCurve<'_> {
     }
 
     /// Returns a part of a piece.
-    fn cut(&self, piece: &Piece, is_whole: bool, [start, end]: [DVec2; 2]) -> Option<Piece> {
+    fn cut(
+        &self,
+        piece: &CurvePiece,
+        is_whole: bool,
+        [start, end]: [DVec2; 2],
+    ) -> Option<CurvePiece> {
         match piece {
             _ if is_whole => Some(*piece),
-            Piece::Line(_) => Some(Piece::Line(end)),
-            Piece::Arc(arc, _) => {
-                fit::between(arc, start, end, self.tolerance).map(|arc| Piece::Arc(arc, end))
+            CurvePiece::Line(_) => Some(CurvePiece::Line(end)),
+            CurvePiece::Arc(arc, _) => {
+                fit::between(arc, start, end, self.tolerance).map(|arc| CurvePiece::Arc(arc, end))
             }
-            Piece::Cubic(..) => None,
+            CurvePiece::Cubic(..) => None,
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::math::DVec2;
 use crate::parallel;
 use crate::sorting::CompactSort;
 use crate::target::drawing::{Line, LineClass};
-use crate::target::{Arc, Curve, Piece};
+use crate::target::{Curve, CurvePiece, EllipticArc};
 
 /// Lines that end this near to a chord, as a part of the tolerance, end on it.
 const MEETS: f64 = 0.1;
@@ -116,7 +116,7 @@ fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
     for (i, curve) in curves.iter().enumerate() {
         let pieces = curve.iter().flat_map(|c| c.pieces.iter().enumerate());
         arcs.extend(pieces.filter_map(|(k, piece)| match piece {
-            Piece::Arc(arc, _) => Some((arc.turn.abs(), i, k)),
+            CurvePiece::Arc(arc, _) => Some((arc.turn.abs(), i, k)),
             _ => None,
         }));
     }
@@ -125,7 +125,7 @@ fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
     for (_, i, k) in arcs {
         let Some(curve) = curves.get_mut(i).and_then(Option::as_mut) else { continue };
         let start = k.checked_sub(1).map_or(curve.start, |before| curve.pieces[before].end());
-        if let Piece::Arc(arc, end) = &mut curve.pieces[k] {
+        if let CurvePiece::Arc(arc, end) = &mut curve.pieces[k] {
             match leaders.like(arc, start, *end) {
                 Some(united) => *arc = united,
                 None => leaders.add(*arc),
@@ -136,7 +136,7 @@ fn unite(curves: &mut [Option<Curve>], tolerance: f64) {
 
 /// Arcs that others may be parts of, by the grid cells of their centres.
 struct Leaders {
-    cells: std::collections::BTreeMap<[i64; 2], Vec<Arc>>,
+    cells: std::collections::BTreeMap<[i64; 2], Vec<EllipticArc>>,
     tolerance: f64,
 }
 
@@ -153,7 +153,7 @@ impl Leaders {
         (center / (self.tolerance * 2.0)).floor().to_array().map(|v| v as i64)
     }
 
-    fn add(&mut self, arc: Arc) {
+    fn add(&mut self, arc: EllipticArc) {
         let cell = self.cells.entry(self.cell(arc.center)).or_default();
         if cell.len() < MOST_IN_CELL {
             cell.push(arc);
@@ -161,7 +161,7 @@ impl Leaders {
     }
 
     /// Returns the arc as a part of one known already.
-    fn like(&self, arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
+    fn like(&self, arc: &EllipticArc, start: DVec2, end: DVec2) -> Option<EllipticArc> {
         let [x, y] = self.cell(arc.center);
         let around = (-1..=1).flat_map(|i| (-1..=1).map(move |k| (i, k)));
         let cells =

@@ -32,9 +32,9 @@ pub use vectors::SheetPainter;
 use crate::curve::{pieces, stroke_font};
 use crate::math::{DVec2, Rect};
 use crate::target::dimension::DimensionText;
-use crate::target::drawing::{Anchor, Drawing, Line, LineClass, NEARNESS_STEPS};
-use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
-use crate::target::{Curve, Piece};
+use crate::target::drawing::{Drawing, Line, LineClass, NEARNESS_STEPS, TextAnchor};
+use crate::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
+use crate::target::{Curve, CurvePiece};
 use crate::{Error, Result};
 
 /// Treatment of hidden lines.
@@ -55,7 +55,7 @@ pub const DEEPEST: u32 = 9;
 
 /// Part of the plane that the paper shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Frame {
+pub enum PaperFrame {
     /// All of the drawing, and no more.
     #[default]
     Content,
@@ -75,7 +75,7 @@ pub struct Options {
     /// Millimetres per unit of the model.
     pub unit: f64,
     /// Part of the plane to show.
-    pub frame: Frame,
+    pub frame: PaperFrame,
     /// Treatment of hidden lines.
     pub hidden: Hidden,
     /// Pens of the line classes.
@@ -100,7 +100,7 @@ impl Default for Options {
             margin: 5.0,
             scale: Scale::Fit,
             unit: 1.0,
-            frame: Frame::Content,
+            frame: PaperFrame::Content,
             hidden: Hidden::Drop,
             pens: Pens::default(),
             fit: 0.0,
@@ -260,8 +260,8 @@ pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<Laid
 }
 
 /// Returns the frame of a drawing; a drawing without extent gets one around the origin.
-fn frame_of(drawing: &Drawing, frame: Frame) -> Rect {
-    let window = drawing.window.filter(|_| frame == Frame::Window);
+fn frame_of(drawing: &Drawing, frame: PaperFrame) -> Rect {
+    let window = drawing.window.filter(|_| frame == PaperFrame::Window);
     let found = window.or_else(|| drawing.bounds()).or(drawing.window);
     found.or_else(|| Rect::around([DVec2::ZERO])).unwrap_or_else(unit_square)
 }
@@ -381,14 +381,14 @@ impl<'a> Strokes<'a> {
     }
 
     /// Appends the marks of a line; dashed ones are divided at corners.
-    fn put(&self, marks: &mut Vec<Mark>, i: usize, pen: usize, dashed: bool) {
+    fn put(&self, marks: &mut Vec<PaperMark>, i: usize, pen: usize, dashed: bool) {
         let curve = self.curves.get(i).and_then(Option::as_ref);
         if let Some(curve) = curve.filter(|c| !c.is_straight()) {
             let parts = match dashed {
                 true => pieces::at_corners(curve, dashes::CORNER),
                 false => vec![curve.clone()],
             };
-            marks.extend(parts.into_iter().map(|curve| Mark::Curve { curve, pen }));
+            marks.extend(parts.into_iter().map(|curve| PaperMark::Curve { curve, pen }));
             return;
         }
         let (_, line) = self.lines[i];
@@ -404,14 +404,14 @@ impl<'a> Strokes<'a> {
             true => dashes::at_corners(&points, line.closed),
             false => vec![(points, line.closed)],
         };
-        let stroke = |(points, closed)| Mark::Stroke { points, closed, pen };
+        let stroke = |(points, closed)| PaperMark::Stroke { points, closed, pen };
         marks.extend(parts.into_iter().map(stroke));
     }
 }
 
 /// Returns the points of a curve of lines; the first one is not repeated.
 fn corners(curve: &Curve) -> Vec<DVec2> {
-    let last = curve.pieces.last().map(Piece::end).filter(|_| !curve.closed);
+    let last = curve.pieces.last().map(CurvePiece::end).filter(|_| !curve.closed);
     curve.iter().map(|(start, _)| start).chain(last).collect()
 }
 
@@ -429,12 +429,12 @@ fn put_regions(sheet: &mut Sheet, views: &[Placed], tolerance: f64) {
                 r.iter().map(|p| onto_paper(*p, view.origin, view.factor)).collect()
             };
             if let Some(rings) = curves.next().flatten() {
-                marks.push(Mark::Area { rings, color: region.color, even_odd: false });
+                marks.push(PaperMark::Area { rings, color: region.color, even_odd: false });
                 continue;
             }
             let rings: Vec<Vec<DVec2>> = region.rings.iter().map(ring).collect();
             if rings.iter().flatten().all(|p| p.is_finite()) && !rings.is_empty() {
-                marks.push(Mark::Fill { rings, color: region.color, even_odd: false });
+                marks.push(PaperMark::Fill { rings, color: region.color, even_odd: false });
             }
         }
     }
@@ -450,7 +450,7 @@ fn put_labels(sheet: &mut Sheet, views: &[Placed], options: &Options) {
             let pen = text_pen(sheet, label.height, options);
             let at = onto_paper(label.at, view.origin, view.factor);
             let (text, height, anchor) = (label.text.clone(), label.height, label.anchor);
-            marks.push(Mark::Text { at, text, height, anchor, pen });
+            marks.push(PaperMark::Text { at, text, height, anchor, pen });
         }
     }
     if !marks.is_empty() {
@@ -477,7 +477,7 @@ pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
 
 /// Returns the strokes of a [`Mark::Text`], in the sheet's millimetres: letters of the
 /// [single-stroke font](stroke_font).
-pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<Vec<DVec2>> {
+pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: TextAnchor) -> Vec<Vec<DVec2>> {
     let line = stroke_font::line(text, height);
     let start = at - DVec2::new(line.advance * anchor.share(), 0.0);
     line.strokes.into_iter().map(|s| s.into_iter().map(|p| p + start).collect()).collect()
@@ -485,7 +485,7 @@ pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<V
 
 /// Returns the strokes of a dimension's text, in the sheet's millimetres.
 pub fn dimension_strokes(text: &DimensionText) -> Vec<Vec<DVec2>> {
-    let strokes = text_strokes(DVec2::ZERO, &text.text, text.height, Anchor::Middle);
+    let strokes = text_strokes(DVec2::ZERO, &text.text, text.height, TextAnchor::Middle);
     // With y down as on the sheet: rotating by `along` takes x to it.
     let turn = |p: DVec2| text.at + text.along.rotate(p);
     strokes.into_iter().map(|s| s.into_iter().map(turn).collect()).collect()

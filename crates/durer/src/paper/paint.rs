@@ -7,7 +7,7 @@ use crate::math::{DAffine2, DVec2};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{Cap, Join, Stroke};
 use crate::raster::paint::{Canvas, Options, Paint};
-use crate::target::sheet::{Mark, Pen, Sheet};
+use crate::target::sheet::{PaperMark, Pen, Sheet};
 use crate::target::{Curve, Pixels};
 use std::sync::Arc;
 
@@ -57,9 +57,9 @@ pub fn paint(
     Ok(pixels)
 }
 
-fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
+fn put(canvas: &mut Canvas, mark: &PaperMark, pens: &[Pen]) -> Result<()> {
     match mark {
-        Mark::Fill { rings, color, even_odd } => {
+        PaperMark::Fill { rings, color, even_odd } => {
             let mut path = Path::new();
             rings.iter().for_each(|r| {
                 path.extend(&Path::polygon(r.iter().copied()));
@@ -67,16 +67,16 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
             canvas.fill(&path, rule(*even_odd), &Paint::Color(*color), 1.0);
             Ok(())
         }
-        Mark::Area { rings, color, even_odd } => {
+        PaperMark::Area { rings, color, even_odd } => {
             canvas.fill(&around(rings), rule(*even_odd), &Paint::Color(*color), 1.0);
             Ok(())
         }
-        Mark::Gradient(area) => {
+        PaperMark::Gradient(area) => {
             let paint = Paint::Gradient(Arc::new(area.gradient.clone()));
             canvas.fill(&around(&area.rings), rule(area.even_odd), &paint, 1.0);
             Ok(())
         }
-        Mark::Stroke { points, closed, pen } => match pens.get(*pen) {
+        PaperMark::Stroke { points, closed, pen } => match pens.get(*pen) {
             Some(pen) if pen.dashes.is_empty() => line(canvas, points, *closed, pen),
             Some(pen) => {
                 let parts = dashes::cut(points, *closed, &pen.dashes);
@@ -84,7 +84,7 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
             }
             None => Ok(()),
         },
-        Mark::Curve { curve, pen } => match pens.get(*pen) {
+        PaperMark::Curve { curve, pen } => match pens.get(*pen) {
             Some(pen) if pen.dashes.is_empty() => draw(canvas, &pieces::path(curve, FINE), pen),
             Some(pen) => {
                 let parts = dashes::cut(&pieces::points(curve, FINE), curve.closed, &pen.dashes);
@@ -92,18 +92,18 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
             }
             None => Ok(()),
         },
-        Mark::Text { at, text, height, anchor, pen } => {
+        PaperMark::Text { at, text, height, anchor, pen } => {
             let Some(pen) = pens.get(*pen) else { return Ok(()) };
             let strokes = text_strokes(*at, text, *height, *anchor);
             strokes.iter().try_for_each(|stroke| line(canvas, stroke, false, pen))
         }
-        Mark::Dimension(dimension) => {
+        PaperMark::Dimension(dimension) => {
             dimension.marks.iter().try_for_each(|mark| put(canvas, mark, pens))?;
             let Some(pen) = pens.get(dimension.text.pen) else { return Ok(()) };
             let strokes = dimension_strokes(&dimension.text);
             strokes.iter().try_for_each(|stroke| line(canvas, stroke, false, pen))
         }
-        Mark::Group(group) => {
+        PaperMark::Group(group) => {
             if let Some(clip) = &group.clip {
                 canvas.push_clip(&around(&clip.rings), rule(clip.even_odd));
             }
@@ -157,14 +157,14 @@ mod tests {
             let ring = vec![(at(0), at(7)), (at(14), at(3)), (at(9), at(20))];
             let color = [i as u8, (i >> 3) as u8, (i >> 8) as u8, 40 + (i % 200) as u8];
             let rings = vec![ring.into_iter().map(|(x, y)| DVec2::new(x, y)).collect()];
-            Mark::Fill { rings, color, even_odd: false }
+            PaperMark::Fill { rings, color, even_odd: false }
         };
-        let mut marks: Vec<Mark> = (0..AT_ONCE + 200).map(fill).collect();
-        let sheet = |marks: Vec<Mark>| {
+        let mut marks: Vec<PaperMark> = (0..AT_ONCE + 200).map(fill).collect();
+        let sheet = |marks: Vec<PaperMark>| {
             let layers = vec![SheetLayer { name: "fills".to_owned(), marks }];
             Sheet { size: DVec2::splat(97.0), layers, ..Sheet::default() }
         };
-        let painted = |marks: Vec<Mark>| paint(sheet(marks), 60, 60, [250, 240, 230, 255]);
+        let painted = |marks: Vec<PaperMark>| paint(sheet(marks), 60, 60, [250, 240, 230, 255]);
         let parts = painted(marks.clone()).expect("painted");
         // The last 200 over the picture of the earlier ones.
         let last = marks.split_off(AT_ONCE);

@@ -3,8 +3,8 @@
 use super::{Angle, Options, pen_index, scale_text, text_pen};
 use crate::curve::stroke_font;
 use crate::math::DVec2;
-use crate::target::drawing::Anchor;
-use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use crate::target::drawing::TextAnchor;
+use crate::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
 
 /// Contents of the title block.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -67,7 +67,7 @@ pub fn fitted(text: &str, height: f64, room: f64) -> f64 {
 }
 
 struct Block<'a> {
-    marks: &'a mut Vec<Mark>,
+    marks: &'a mut Vec<PaperMark>,
     /// Its upper left corner.
     corner: DVec2,
     /// Left border of the cells placed so far.
@@ -81,7 +81,7 @@ impl Block<'_> {
         self.right = (self.right - width).max(self.corner.x);
         let top = DVec2::new(self.right, self.corner.y);
         let points = vec![top, top + DVec2::new(0.0, HEIGHT)];
-        self.marks.push(Mark::Stroke { points, closed: false, pen: self.thin });
+        self.marks.push(PaperMark::Stroke { points, closed: false, pen: self.thin });
         top
     }
 }
@@ -101,11 +101,11 @@ fn write(
     for (text, height, y) in lines.into_iter().filter(|l| l.1 > 0.05) {
         let pen = text_pen(sheet, height, options);
         let at = at + DVec2::new(PAD, y);
-        block.marks.push(Mark::Text {
+        block.marks.push(PaperMark::Text {
             at,
             text: text.to_owned(),
             height,
-            anchor: Anchor::Start,
+            anchor: TextAnchor::Start,
             pen,
         });
     }
@@ -123,14 +123,14 @@ fn symbol(at: DVec2, angle: Angle, block: &mut Block, pen: usize) {
             let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / 48.0);
             circles + DVec2::new(cos, sin) * radius
         });
-        block.marks.push(Mark::Stroke { points: points.collect(), closed: true, pen });
+        block.marks.push(PaperMark::Stroke { points: points.collect(), closed: true, pen });
     }
     let corners = [(-4.0, -small), (4.0, -large), (4.0, large), (-4.0, small)];
     let points = corners.map(|(x, y)| cone + DVec2::new(x, y)).to_vec();
-    block.marks.push(Mark::Stroke { points, closed: true, pen });
+    block.marks.push(PaperMark::Stroke { points, closed: true, pen });
 }
 
-fn rectangle(min: DVec2, max: DVec2, pen: usize) -> Mark {
+fn rectangle(min: DVec2, max: DVec2, pen: usize) -> PaperMark {
     let points = vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-    Mark::Stroke { points, closed: true, pen }
+    PaperMark::Stroke { points, closed: true, pen }
 }

@@ -4,8 +4,8 @@
 //! the whole, bit for bit. Blended surfaces, shadows and metered exposure need the whole scene at once.
 
 use super::{
-    Cull, Exposure, Filter, Lighting, Places, RenderOptions, Report, Seen, Shading, Shadows,
-    Status, SurfaceMethod, Surroundings, Survey, Unseen, render,
+    Cull, Exposure, Lighting, Places, RenderOptions, Report, Shading, Shadows, Status,
+    SurfaceMethod, Surroundings, Survey, SurveyResult, TriangleFilter, Unseen, render,
 };
 use crate::scene::Scene;
 use crate::target::{Framebuffer, NO_ITEM};
@@ -56,7 +56,7 @@ pub fn survey(options: &RenderOptions) -> Result<Survey> {
     options.check()?;
     let view = options.view()?;
     let sample_reach = options.samples.reach();
-    let filter = Filter { cull: options.cull, sample_reach, marks: options.marks };
+    let filter = TriangleFilter { cull: options.cull, sample_reach, marks: options.marks };
     let centers = options.depth || options.item || options.normal;
     let RenderOptions { samples, level, .. } = *options;
     let work = options.work.clone();
@@ -70,7 +70,7 @@ pub fn survey(options: &RenderOptions) -> Result<Survey> {
 pub fn render_seen(
     scene: &Scene,
     triangles: u64,
-    seen: &Seen,
+    seen: &SurveyResult,
     options: &RenderOptions,
 ) -> Result<(Framebuffer, Report)> {
     let (mut picture, report) = render(scene, options)?;

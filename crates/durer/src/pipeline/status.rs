@@ -6,7 +6,7 @@
 
 use super::{RenderOptions, render};
 use crate::Result;
-use crate::clip::outcode::{DepthRange, Outcode};
+use crate::clip::outcode::{ClipDepths, Outcode};
 use crate::math::{DVec3, Vec4};
 use crate::scene::{AlphaMode, Camera, Projection, Scene, Topology};
 use crate::target::Framebuffer;
@@ -167,7 +167,7 @@ impl<'a> Places<'a> {
                 continue;
             }
             let clip = self.view.clip_from_world() * p.extend(1.0);
-            let code = Outcode::of_homogeneous(clip, DepthRange::NegativeOneToOne);
+            let code = Outcode::of_homogeneous(clip, ClipDepths::NegativeOneToOne);
             self.behind_all &= clip.w <= 0.0;
             self.beyond_all = Some(self.beyond_all.map_or(code, |all| all & code));
         }

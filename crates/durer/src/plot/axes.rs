@@ -4,7 +4,7 @@ use super::ticks::{offset, short, ticks};
 use super::{Axes, Marks, Options};
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Aabb, HeightField};
-use crate::target::drawing::{Anchor, Label, Line, LineClass};
+use crate::target::drawing::{Line, LineClass, TextAnchor, TextLabel};
 use crate::view::picture_plane::PicturePlane;
 
 /// Length of a tick, in heights of a letter.
@@ -122,7 +122,7 @@ fn axis(
             if range[0] == range[1] { 0.5 } else { (value - range[0]) / (range[1] - range[0]) };
         plane.project(edge.ends[0].lerp(edge.ends[1], part.clamp(0.0, 1.0)))
     };
-    let labelled = |wanted: usize| -> Vec<(DVec2, Label)> {
+    let labelled = |wanted: usize| -> Vec<(DVec2, TextLabel)> {
         let ticks = ticks([range[0].min(range[1]), range[0].max(range[1])], wanted);
         let placed = ticks.into_iter().filter_map(|(value, text)| Some((at(value)?, text)));
         let with_label = |(at, text): (DVec2, String)| {
@@ -157,7 +157,7 @@ fn axis(
         _ => (middle + out * ((TICK + 2.2 * GAP + widest) * letter), out),
     };
     let mut name = match edge.k {
-        1 => Label { at, text: name, height, anchor: Anchor::Middle },
+        1 => TextLabel { at, text: name, height, anchor: TextAnchor::Middle },
         _ => label(at, out, name, letter, height),
     };
     // Numbers at the end of an axis push its name on.
@@ -171,26 +171,26 @@ fn axis(
 }
 
 /// Returns the box of a label in the plane; `letter` is the height of a letter there.
-pub fn box_of(label: &Label, letter: f64) -> Option<Rect> {
+pub fn box_of(label: &TextLabel, letter: f64) -> Option<Rect> {
     let width = label.text.chars().count() as f64 * LETTER * letter;
     let left = match label.anchor {
-        Anchor::Start => 0.0,
-        Anchor::Middle => 0.5 * width,
-        Anchor::End => width,
+        TextAnchor::Start => 0.0,
+        TextAnchor::Middle => 0.5 * width,
+        TextAnchor::End => width,
     };
     let low = label.at - DVec2::new(left, 0.0);
     Rect::new(low, low + DVec2::new(width, letter)).ok()
 }
 
 /// Returns whether a label overlaps no other.
-fn is_free(label: &Label, others: &[Label], letter: f64) -> bool {
+fn is_free(label: &TextLabel, others: &[TextLabel], letter: f64) -> bool {
     let Some(own) = box_of(label, letter) else { return true };
     let mut boxes = others.iter().filter_map(|other| box_of(other, letter));
     !boxes.any(|other| other.overlaps(&own))
 }
 
 /// Returns whether no label touches the next.
-fn stand_apart(placed: &[(DVec2, Label)], letter: f64) -> bool {
+fn stand_apart(placed: &[(DVec2, TextLabel)], letter: f64) -> bool {
     let boxes: Vec<Rect> = placed.iter().filter_map(|(_, l)| box_of(l, letter)).collect();
     let room = DVec2::splat(APART * letter);
     boxes.windows(2).all(|pair| {
@@ -205,13 +205,13 @@ fn reach(out: DVec2, width: f64) -> f64 {
 }
 
 /// Returns a text that extends from a point in a direction.
-fn label(at: DVec2, out: DVec2, text: String, letter: f64, height: f64) -> Label {
+fn label(at: DVec2, out: DVec2, text: String, letter: f64, height: f64) -> TextLabel {
     let anchor = match out.x {
-        x if x < -0.35 => Anchor::End,
-        x if x > 0.35 => Anchor::Start,
-        _ => Anchor::Middle,
+        x if x < -0.35 => TextAnchor::End,
+        x if x > 0.35 => TextAnchor::Start,
+        _ => TextAnchor::Middle,
     };
     // The letter's middle at the point for sideways, its top or foot for up and down.
     let at = at + DVec2::new(0.0, (out.y - 1.0) * 0.5 * letter);
-    Label { at, text, height, anchor }
+    TextLabel { at, text, height, anchor }
 }

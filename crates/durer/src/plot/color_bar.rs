@@ -3,8 +3,8 @@
 use super::ticks::{offset, short, ticks};
 use super::{BAR, MARGIN, Options, SHADES, bar_width, index_of};
 use crate::math::DVec2;
-use crate::target::drawing::Anchor;
-use crate::target::sheet::{Mark, Pen, Sheet};
+use crate::target::drawing::TextAnchor;
+use crate::target::sheet::{PaperMark, Pen, Sheet};
 
 /// Returns its labelled heights, with their distance from its foot as a share of its length; empty if
 /// there is no bar.
@@ -35,7 +35,7 @@ fn length(options: &Options) -> f64 {
 }
 
 /// Returns the bar on the right of the page, with its labels.
-pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) -> Vec<Mark> {
+pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) -> Vec<PaperMark> {
     let (labels, Some(map)) = (labels(heights, options), options.color_map) else {
         return Vec::new();
     };
@@ -52,8 +52,8 @@ pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) ->
             .to_vec()
     };
     let share = |shade: usize| shade as f64 / SHADES as f64;
-    let mut marks: Vec<Mark> = (0..SHADES)
-        .map(|shade| Mark::Fill {
+    let mut marks: Vec<PaperMark> = (0..SHADES)
+        .map(|shade| PaperMark::Fill {
             // Up to the end, under the following ones, so that no seam is visible.
             rings: vec![corners(share(shade), 1.0)],
             color: map.at(share(shade) + 0.5 / SHADES as f64),
@@ -64,17 +64,17 @@ pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) ->
     let (line, letters) = (pen(options.pen), pen(options.text * 0.1));
     let line = index_of(&mut sheet.pens, line);
     let letters = index_of(&mut sheet.pens, letters);
-    marks.push(Mark::Stroke { points: corners(0.0, 1.0), closed: true, pen: line });
+    marks.push(PaperMark::Stroke { points: corners(0.0, 1.0), closed: true, pen: line });
     for (part, text) in labels {
         let (right, height) = (left + width, at(part));
         let tick = |x: f64| DVec2::new(x, height);
         if part <= 1.0 {
             let points = vec![tick(right), tick(right + 0.5 * options.text)];
-            marks.push(Mark::Stroke { points, closed: false, pen: line });
+            marks.push(PaperMark::Stroke { points, closed: false, pen: line });
         }
         let at = DVec2::new(right + options.text, height + 0.5 * options.text);
-        let anchor = Anchor::Start;
-        marks.push(Mark::Text { at, text, height: options.text, anchor, pen: letters });
+        let anchor = TextAnchor::Start;
+        marks.push(PaperMark::Text { at, text, height: options.text, anchor, pen: letters });
     }
     marks
 }

@@ -13,12 +13,12 @@ pub use color_map::ColorMap;
 
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Aabb, Camera, HeightField, Projection};
-use crate::target::drawing::{Drawing, Label, Line, LineClass, Region};
-use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use crate::target::drawing::{Drawing, Line, LineClass, Region, TextLabel};
+use crate::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
 use crate::trace::NoTrace;
 use crate::view::picture_plane::PicturePlane;
 use crate::view::projection::{FitOptions, Lens, ViewDirection, fit_box};
-use crate::visibility::line::floating_horizon::{self, Curve, Family};
+use crate::visibility::line::floating_horizon::{self, GridChain, LineFamily};
 use crate::{Error, Result};
 
 /// Options for plotting a surface.
@@ -306,17 +306,17 @@ impl Options {
 
 /// Splits a curve where its colour changes, and projects its parts.
 fn colored(
-    curve: &Curve,
+    curve: &GridChain,
     field: &HeightField,
     plane: &PicturePlane,
     options: &Options,
     out: &mut Vec<Inked>,
 ) {
     let layer = match (curve.visible, curve.family) {
-        (false, Family::AlongX) => 0,
-        (false, Family::AlongZ) => 1,
-        (true, Family::AlongX) => 2,
-        (true, Family::AlongZ) => 3,
+        (false, LineFamily::AlongX) => 0,
+        (false, LineFamily::AlongZ) => 1,
+        (true, LineFamily::AlongX) => 2,
+        (true, LineFamily::AlongZ) => 3,
     };
     let plain = if curve.underside { options.underside } else { None };
     let mut add = |points: &[DVec3], color: [u8; 4]| {
@@ -379,7 +379,7 @@ impl Layout {
         bounds: &Aabb,
         plane: &PicturePlane,
         heights: Option<[f64; 2]>,
-        labels: &[Label],
+        labels: &[TextLabel],
         scale: f64,
         options: &Options,
     ) -> Self {
@@ -435,7 +435,7 @@ impl Plot {
         for (line, ink) in drawing.lines.into_iter().zip(inks) {
             let pen = pen_for(&mut sheet.pens, &line, ink.color, &options);
             let points = layout.placed(line.points);
-            strokes[ink.layer].push(Mark::Stroke { points, closed: line.closed, pen });
+            strokes[ink.layer].push(PaperMark::Stroke { points, closed: line.closed, pen });
         }
         layers.extend(LAYERS.into_iter().zip(strokes));
         layers.push(("labels", layout.texts(&mut sheet, &drawing.labels, &options)));
@@ -449,12 +449,12 @@ impl Plot {
 
 impl Layout {
     /// Converts regions to marks; the memory of finished ones is freed along the way.
-    fn fills(&self, mut regions: Vec<Region>) -> Vec<Mark> {
+    fn fills(&self, mut regions: Vec<Region>) -> Vec<PaperMark> {
         let mut marks = Vec::with_capacity(regions.len());
         regions.reverse();
         while let Some(Region { rings, color, .. }) = regions.pop() {
             let rings = rings.into_iter().map(|ring| self.placed(ring)).collect();
-            marks.push(Mark::Fill { rings, color, even_odd: false });
+            marks.push(PaperMark::Fill { rings, color, even_odd: false });
             if regions.len() < regions.capacity() / 2 {
                 regions.shrink_to_fit();
             }
@@ -462,7 +462,7 @@ impl Layout {
         marks
     }
 
-    fn texts(&self, sheet: &mut Sheet, labels: &[Label], options: &Options) -> Vec<Mark> {
+    fn texts(&self, sheet: &mut Sheet, labels: &[TextLabel], options: &Options) -> Vec<PaperMark> {
         let mut marks = Vec::new();
         let mut pen = |height: f64| {
             let pen = Pen { width: height * 0.1, color: options.ink, dashes: Vec::new() };
@@ -471,16 +471,16 @@ impl Layout {
         for label in labels {
             let (at, text) = (self.place(label.at), label.text.clone());
             let (height, anchor) = (label.height, label.anchor);
-            marks.push(Mark::Text { at, text, height, anchor, pen: pen(height) });
+            marks.push(PaperMark::Text { at, text, height, anchor, pen: pen(height) });
         }
         let height = options.text * TITLE[0];
         for (line, text) in title_lines(options).into_iter().enumerate() {
             let down = MARGIN + height * (1.0 + line as f64 * TITLE[1]);
-            marks.push(Mark::Text {
+            marks.push(PaperMark::Text {
                 at: DVec2::new(options.page.x * 0.5, down),
                 text,
                 height,
-                anchor: crate::target::drawing::Anchor::Middle,
+                anchor: crate::target::drawing::TextAnchor::Middle,
                 pen: pen(height),
             });
         }
@@ -530,5 +530,5 @@ fn index_of(pens: &mut Vec<Pen>, pen: Pen) -> usize {
 #[derive(Default)]
 struct Marks {
     lines: Vec<Line>,
-    labels: Vec<Label>,
+    labels: Vec<TextLabel>,
 }

@@ -81,7 +81,7 @@ pub const MAX_RADIUS: u32 = 1 << 20;
 
 /// Part of the curve that is being made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Region {
+pub enum CurveRegion {
     /// The octant of a circle from the top to the diagonal.
     Octant,
     /// Part of an ellipse from the top to where the curve falls by 45°; x is stepped.
@@ -94,7 +94,7 @@ pub enum Region {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
     /// Part of the curve.
-    pub region: Region,
+    pub region: CurveRegion,
     /// The pixel, seen from the centre, with y up.
     pub pixel: IVec2,
     /// The decision variable at the pixel; for ellipses multiplied by four, which makes it an integer. If it is
@@ -106,10 +106,10 @@ impl PseudocodeLine for Step {
     /// Returns the line of the pseudocode that follows from the decision variable.
     fn line(&self) -> usize {
         match (self.region, self.d < 0) {
-            (Region::Octant | Region::Flat, true) => 6,
-            (Region::Octant | Region::Flat, false) => 8,
-            (Region::Steep, true) => 15,
-            (Region::Steep, false) => 17,
+            (CurveRegion::Octant | CurveRegion::Flat, true) => 6,
+            (CurveRegion::Octant | CurveRegion::Flat, false) => 8,
+            (CurveRegion::Steep, true) => 15,
+            (CurveRegion::Steep, false) => 17,
         }
     }
 }
@@ -119,7 +119,7 @@ pub fn replay(steps: &[Step]) -> Vec<IVec2> {
     let mut pixels = Vec::new();
     for step in steps {
         let at = (i64::from(step.pixel.x), i64::from(step.pixel.y));
-        mirrored(at, step.region == Region::Octant, |x, y| {
+        mirrored(at, step.region == CurveRegion::Octant, |x, y| {
             pixels.push(IVec2::new(x as i32, y as i32))
         });
     }
@@ -154,7 +154,7 @@ pub fn circle(
     let mut d = 1 - y;
     while x <= y {
         let pixel = IVec2::new(x as i32, y as i32);
-        t.step(|| Step { region: Region::Octant, pixel, d: i128::from(d) });
+        t.step(|| Step { region: CurveRegion::Octant, pixel, d: i128::from(d) });
         mirrored((x, y), true, |x, y| put(center, (x, y), &mut plot));
         if d < 0 {
             d += 2 * x + 3;
@@ -189,7 +189,7 @@ pub fn ellipse(
     // Four times b²x² + a²y² − a²b² at (x + 1, y − ½).
     let mut d = 4 * bb - 4 * aa * wide(b) + aa;
     while 2 * bb * wide(x + 1) < aa * wide(2 * y - 1) {
-        light(Region::Flat, (x, y), d);
+        light(CurveRegion::Flat, (x, y), d);
         let inside = d < 0;
         d += 4 * bb * wide(2 * x + 3);
         if !inside {
@@ -201,7 +201,7 @@ pub fn ellipse(
     // The same at (x + ½, y − 1).
     let mut d = bb * wide(2 * x + 1).pow(2) + 4 * aa * wide(y - 1).pow(2) - 4 * aa * bb;
     while y >= 0 {
-        light(Region::Steep, (x, y), d);
+        light(CurveRegion::Steep, (x, y), d);
         if y == 0 {
             break;
         }
@@ -214,7 +214,7 @@ pub fn ellipse(
         y -= 1;
     }
     // The rest of a flat tip.
-    (x + 1..=a).for_each(|x| light(Region::Steep, (x, 0), d));
+    (x + 1..=a).for_each(|x| light(CurveRegion::Steep, (x, 0), d));
     Ok(())
 }
 

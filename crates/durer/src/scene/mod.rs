@@ -16,7 +16,7 @@ pub use height_field::{Diagonal, HeightField};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, ShadingModel, TextureRef};
 pub use mesh::{Mesh, Part, Topology};
-pub use texture::{Filter, Image, MipFilter, Sampler, Texture, Wrap};
+pub use texture::{Image, MipFilter, Sampler, Texture, TextureFilter, Wrap};
 
 use crate::math::{DMat4, DVec3};
 use crate::{Error, Result};

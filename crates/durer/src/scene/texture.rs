@@ -19,7 +19,7 @@ pub struct Image {
 /// Filter within one image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Filter {
+pub enum TextureFilter {
     /// The texel whose area holds the point.
     Nearest,
     /// The four texels around the point, weighted bilinearly.
@@ -58,9 +58,9 @@ pub enum Wrap {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sampler {
     /// Filter if a texel is larger than a pixel.
-    pub mag: Filter,
+    pub mag: TextureFilter,
     /// Filter if a texel is smaller than a pixel.
-    pub min: Filter,
+    pub min: TextureFilter,
     /// The choice of level where a texel is smaller than a pixel.
     pub mip: MipFilter,
     /// Wrap mode along u.

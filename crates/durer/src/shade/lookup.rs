@@ -11,7 +11,7 @@ use super::lane::Lane;
 use super::mip::Level;
 use super::texture::{Detail, PreparedTexture, SUBTEXEL, SUBTEXEL_BITS, Usage};
 use crate::math::{Vec2, Vec4};
-use crate::scene::{Filter, MipFilter, Wrap};
+use crate::scene::{MipFilter, TextureFilter, Wrap};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x16, i32x16};
 use fearless_simd_macros::simd;
@@ -37,7 +37,8 @@ impl PreparedTexture<'_> {
     /// Returns whether [`Self::sample_x16`] may be used: bilinear at all sizes, and not too large.
     pub(super) fn suits_lanes(&self) -> bool {
         let base = self.chain.level(0);
-        let linear = self.sampler.mag == Filter::Linear && self.sampler.min == Filter::Linear;
+        let linear =
+            self.sampler.mag == TextureFilter::Linear && self.sampler.min == TextureFilter::Linear;
         let texels = u64::from(base.width) * u64::from(base.height);
         linear && base.width.max(base.height) <= MAX_SIDE && texels <= i32::MAX as u64
     }

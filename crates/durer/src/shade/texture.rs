@@ -12,7 +12,7 @@ pub use super::texel::{INFO, MIP_MAP, Step, replay, weights};
 use super::texel::{bilinear, mix};
 pub use super::usage::Usage;
 use crate::math::{Vec2, Vec4};
-use crate::scene::{Filter, Image, MipFilter, Sampler, Wrap};
+use crate::scene::{Image, MipFilter, Sampler, TextureFilter, Wrap};
 use crate::trace::{NoTrace, Tracer};
 use std::sync::Arc;
 
@@ -132,7 +132,13 @@ impl<'a> PreparedTexture<'a> {
 
     /// Returns one level, filtered; premultiplied where alpha weights the colour.
     #[inline(always)]
-    fn filtered(&self, number: usize, uv: Vec2, filter: Filter, t: &mut impl Tracer<Step>) -> Vec4 {
+    fn filtered(
+        &self,
+        number: usize,
+        uv: Vec2,
+        filter: TextureFilter,
+        t: &mut impl Tracer<Step>,
+    ) -> Vec4 {
         let level = self.chain.level(number);
         let (wrap_u, wrap_v) = (self.sampler.wrap_u, self.sampler.wrap_v);
         t.step(|| {
@@ -140,14 +146,14 @@ impl<'a> PreparedTexture<'a> {
             Step::Wrapped { level: number, size: [level.width, level.height], from: uv, to }
         });
         match filter {
-            Filter::Nearest => {
+            TextureFilter::Nearest => {
                 let x = nearest(uv.x, level.width, wrap_u);
                 let y = nearest(uv.y, level.height, wrap_v);
                 let value = self.fetch(level, x, y);
                 t.step(|| Step::Nearest { level: number, texel: [x, y], value });
                 value
             }
-            Filter::Linear => {
+            TextureFilter::Linear => {
                 let (x0, x1, tx) = linear(uv.x, level.width, wrap_u);
                 let (y0, y1, ty) = linear(uv.y, level.height, wrap_v);
                 let texels = [[x0, y0], [x1, y0], [x0, y1], [x1, y1]];

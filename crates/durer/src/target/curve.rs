@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 /// An arc of an ellipse or a circle, or a whole one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arc {
+pub struct EllipticArc {
     /// The middle of the ellipse.
     pub center: DVec2,
     /// Vector from the centre to the end of the longer axis; for a circle, a radius in any direction.
@@ -19,7 +19,7 @@ pub struct Arc {
     pub turn: f64,
 }
 
-impl Arc {
+impl EllipticArc {
     /// Returns the point at an angle, counted as `start` is.
     pub fn at(&self, angle: f64) -> DVec2 {
         let (sin, cos) = libm::sincos(angle);
@@ -52,17 +52,17 @@ impl Arc {
 
 /// A piece of a [`Curve`], from where the one before it ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Piece {
+pub enum CurvePiece {
     /// A straight line to a point.
     Line(DVec2),
     /// An arc and the point where it ends. Its start and end are the curve's points, which are on the arc up to
     /// rounding.
-    Arc(Arc, DVec2),
+    Arc(EllipticArc, DVec2),
     /// A cubic Bézier curve: two control points and its end.
     Cubic(DVec2, DVec2, DVec2),
 }
 
-impl Piece {
+impl CurvePiece {
     /// Returns the point that it ends in.
     pub fn end(&self) -> DVec2 {
         match *self {
@@ -91,47 +91,48 @@ pub struct Curve {
     /// Start of the first piece.
     pub start: DVec2,
     /// The pieces in order.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<CurvePiece>,
     /// True if its end, which then is its start to the bit, is joined to its start.
     pub closed: bool,
 }
 
 impl Curve {
     /// Returns each piece with the point that it begins in.
-    pub fn iter(&self) -> impl Iterator<Item = (DVec2, &Piece)> {
-        let ends = self.pieces.iter().map(Piece::end);
+    pub fn iter(&self) -> impl Iterator<Item = (DVec2, &CurvePiece)> {
+        let ends = self.pieces.iter().map(CurvePiece::end);
         std::iter::once(self.start).chain(ends).zip(&self.pieces)
     }
 
     /// Returns the curve, run through from its end to its start.
     #[must_use]
     pub(crate) fn reversed(self) -> Self {
-        let back = |(start, piece): (DVec2, &Piece)| match *piece {
-            Piece::Line(_) => Piece::Line(start),
-            Piece::Arc(arc, _) => {
-                Piece::Arc(Arc { start: arc.start + arc.turn, turn: -arc.turn, ..arc }, start)
-            }
-            Piece::Cubic(a, b, _) => Piece::Cubic(b, a, start),
+        let back = |(start, piece): (DVec2, &CurvePiece)| match *piece {
+            CurvePiece::Line(_) => CurvePiece::Line(start),
+            CurvePiece::Arc(arc, _) => CurvePiece::Arc(
+                EllipticArc { start: arc.start + arc.turn, turn: -arc.turn, ..arc },
+                start,
+            ),
+            CurvePiece::Cubic(a, b, _) => CurvePiece::Cubic(b, a, start),
         };
-        let mut pieces: Vec<Piece> = self.iter().map(back).collect();
+        let mut pieces: Vec<CurvePiece> = self.iter().map(back).collect();
         pieces.reverse();
         Self { start: self.end(), pieces, closed: self.closed }
     }
 
     /// Returns the point that it ends in.
     pub fn end(&self) -> DVec2 {
-        self.pieces.last().map_or(self.start, Piece::end)
+        self.pieces.last().map_or(self.start, CurvePiece::end)
     }
 
     /// Returns whether all of it is straight.
     pub fn is_straight(&self) -> bool {
-        self.pieces.iter().all(|p| matches!(p, Piece::Line(_)))
+        self.pieces.iter().all(|p| matches!(p, CurvePiece::Line(_)))
     }
 
     /// Returns the arc if the curve is one whole circle or ellipse.
-    pub fn whole(&self) -> Option<&Arc> {
+    pub fn whole(&self) -> Option<&EllipticArc> {
         match &self.pieces[..] {
-            [Piece::Arc(arc, _)] if self.closed && arc.is_whole() => Some(arc),
+            [CurvePiece::Arc(arc, _)] if self.closed && arc.is_whole() => Some(arc),
             _ => None,
         }
     }

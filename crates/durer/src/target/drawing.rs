@@ -173,7 +173,7 @@ impl Region {
 
 /// Alignment of a label with its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Anchor {
+pub enum TextAnchor {
     /// The text starts at the point.
     #[default]
     Start,
@@ -183,7 +183,7 @@ pub enum Anchor {
     End,
 }
 
-impl Anchor {
+impl TextAnchor {
     /// Returns the part of the text's length that is before the point.
     pub fn share(self) -> f64 {
         match self {
@@ -196,7 +196,7 @@ impl Anchor {
 
 /// Line of text.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Label {
+pub struct TextLabel {
     /// Point of the base line, in plane units.
     pub at: DVec2,
     /// The text itself.
@@ -204,7 +204,7 @@ pub struct Label {
     /// Height of capital letters; millimetres on paper, whatever the scale.
     pub height: f64,
     /// Alignment with `at`.
-    pub anchor: Anchor,
+    pub anchor: TextAnchor,
 }
 
 /// Number of steps of [`Drawing::nearness`].
@@ -226,7 +226,7 @@ pub struct Drawing {
     /// Lines, in the order of drawing.
     pub lines: Vec<Line>,
     /// Labels.
-    pub labels: Vec<Label>,
+    pub labels: Vec<TextLabel>,
     /// Counts of the edges of the faces that the lines belong to.
     pub edges: EdgeCount,
     /// Nearness of each line, in steps from 0, the nearest, to below [`NEARNESS_STEPS`]; `None` for lines whose

@@ -6,7 +6,7 @@ use crate::{Error, Result};
 /// Row of a picture that comes first in memory. In pictures of scenes it is the top row; [`crate::commands`] draw in
 /// either order, and [`Framebuffer::with_origin`] converts one to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Origin {
+pub enum RowOrigin {
     /// Row 0 is the top row, as in PNG; y grows downwards.
     #[default]
     TopLeft,
@@ -157,7 +157,7 @@ pub const NO_ITEM: u32 = u32::MAX;
 pub struct Framebuffer {
     /// Row that comes first. [`crate::commands`] draw in either order; [`crate::pipeline`] makes pictures with the top
     /// row first, which all writers expect.
-    pub origin: Origin,
+    pub origin: RowOrigin,
     /// 8-bit sRGB with straight (not premultiplied) alpha.
     pub color: Pixels<[u8; 4]>,
     /// Window depth 0 (near) … 1 (far) at the pixel centre; 1 at the background.
@@ -180,7 +180,7 @@ impl Framebuffer {
     /// Creates a framebuffer with a colour plane only, transparent black.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
-            origin: Origin::TopLeft,
+            origin: RowOrigin::TopLeft,
             color: Pixels::new(width, height, [0; 4]),
             depth: None,
             item: None,
@@ -230,14 +230,14 @@ impl Framebuffer {
     /// Turns over the rows of all planes unless the picture has this order; returns the picture.
     ///
     /// ```
-    /// use durer::target::{Framebuffer, Origin};
+    /// use durer::target::{Framebuffer, RowOrigin};
     ///
-    /// let mut picture = Framebuffer { origin: Origin::BottomLeft, ..Framebuffer::new(1, 2) };
+    /// let mut picture = Framebuffer { origin: RowOrigin::BottomLeft, ..Framebuffer::new(1, 2) };
     /// picture.color.set(0, 0, [9; 4]);
-    /// let picture = picture.with_origin(Origin::TopLeft);
+    /// let picture = picture.with_origin(RowOrigin::TopLeft);
     /// assert_eq!(picture.color.data(), [[0; 4], [9; 4]]);
     /// ```
-    pub fn with_origin(mut self, origin: Origin) -> Self {
+    pub fn with_origin(mut self, origin: RowOrigin) -> Self {
         if self.origin != origin {
             self.origin = origin;
             self.color.reverse_rows();

@@ -19,7 +19,7 @@ pub enum Spread {
 
 /// Curve along which a gradient's parameter runs from 0 to 1; points in the gradient's own space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum GradientShape {
     /// Gradient from one point to another, constant across.
     Linear {
         /// Point where the parameter is 0.
@@ -44,7 +44,7 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gradient {
     /// Geometry of the parameter.
-    pub shape: Shape,
+    pub shape: GradientShape,
     /// Parameters 0 … 1 in rising order and their colours: sRGB with straight alpha.
     pub stops: Vec<(f64, [u8; 4])>,
     /// Extension outside 0 … 1.
@@ -59,8 +59,8 @@ impl Gradient {
     pub(crate) fn only_color(&self, map: DAffine2) -> Option<[u8; 4]> {
         let Some((_, last)) = self.stops.last() else { return Some([0; 4]) };
         let is_flat = match self.shape {
-            Shape::Linear { start, end } => start == end || !(start + end).is_finite(),
-            Shape::Radial { center, radius, focus, focus_radius } => {
+            GradientShape::Linear { start, end } => start == end || !(start + end).is_finite(),
+            GradientShape::Radial { center, radius, focus, focus_radius } => {
                 let is_finite = (center + focus + radius + focus_radius).is_finite();
                 radius <= 0.0 || !is_finite
             }
@@ -75,32 +75,32 @@ impl Gradient {
     ///
     /// ```
     /// use durer::math::{DAffine2, DVec2};
-    /// use durer::target::gradient::{Gradient, Shape, Spread};
+    /// use durer::target::gradient::{Gradient, GradientShape, Spread};
     ///
-    /// let shape = Shape::Linear { start: DVec2::ZERO, end: DVec2::X };
+    /// let shape = GradientShape::Linear { start: DVec2::ZERO, end: DVec2::X };
     /// let stops = vec![(0.0, [0, 0, 0, 255]), (1.0, [255; 4])];
     /// let (spread, transform) = (Spread::Pad, DAffine2::IDENTITY);
     /// let gradient = Gradient { shape, stops, spread, transform };
     /// let larger = gradient.mapped(DAffine2::from_scale(DVec2::new(3.0, 2.0)));
-    /// let expected = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(3.0, 0.0) };
+    /// let expected = GradientShape::Linear { start: DVec2::ZERO, end: DVec2::new(3.0, 0.0) };
     /// assert_eq!((larger.shape, larger.transform), (expected, DAffine2::IDENTITY));
     /// ```
     pub fn mapped(&self, map: DAffine2) -> Self {
         let map = map * self.transform;
         let (shape, transform) = match self.shape {
-            Shape::Linear { start, end } => {
+            GradientShape::Linear { start, end } => {
                 let way = end - start;
                 let (start, along) = (map.transform_point2(start), map.transform_vector2(way));
                 // Colours are constant across, and change at a right angle to that.
                 let normal = map.transform_vector2(way.perp()).perp();
                 let way = normal * (along.dot(normal) / normal.length_squared());
-                (Shape::Linear { start, end: start + way }, DAffine2::IDENTITY)
+                (GradientShape::Linear { start, end: start + way }, DAffine2::IDENTITY)
             }
-            Shape::Radial { center, radius, focus, focus_radius } => match scale_of(&map) {
+            GradientShape::Radial { center, radius, focus, focus_radius } => match scale_of(&map) {
                 Some(scale) => {
                     let (radius, focus_radius) = (radius * scale, focus_radius * scale);
                     let [center, focus] = [center, focus].map(|p| map.transform_point2(p));
-                    let shape = Shape::Radial { center, radius, focus, focus_radius };
+                    let shape = GradientShape::Radial { center, radius, focus, focus_radius };
                     (shape, DAffine2::IDENTITY)
                 }
                 None => {
@@ -108,7 +108,7 @@ impl Gradient {
                     let (size, turn) = (DVec2::splat(radius), 0.0);
                     let unit = DAffine2::from_scale_angle_translation(size, turn, center);
                     let center = DVec2::ZERO;
-                    (Shape::Radial { center, radius: 1.0, focus, focus_radius }, map * unit)
+                    (GradientShape::Radial { center, radius: 1.0, focus, focus_radius }, map * unit)
                 }
             },
         };

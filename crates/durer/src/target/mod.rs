@@ -7,5 +7,5 @@ mod framebuffer;
 pub mod gradient;
 pub mod sheet;
 
-pub use curve::{Arc, Curve, Piece};
-pub use framebuffer::{Framebuffer, NO_ITEM, Origin, Pixels};
+pub use curve::{Curve, CurvePiece, EllipticArc};
+pub use framebuffer::{Framebuffer, NO_ITEM, Pixels, RowOrigin};

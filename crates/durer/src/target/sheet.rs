@@ -3,7 +3,7 @@
 
 use super::Curve;
 use super::dimension::{DimensionText, Measure};
-use super::drawing::Anchor;
+use super::drawing::TextAnchor;
 use super::gradient::Gradient;
 use crate::math::DVec2;
 
@@ -22,7 +22,7 @@ pub struct Pen {
 
 /// Mark on the paper.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Mark {
+pub enum PaperMark {
     /// Chain of straight pieces with round caps and joins.
     Stroke {
         /// Points, at least two.
@@ -68,7 +68,7 @@ pub enum Mark {
         /// Height of capital letters, millimetres.
         height: f64,
         /// Alignment with `at`.
-        anchor: Anchor,
+        anchor: TextAnchor,
         /// Index into [`Sheet::pens`].
         pen: usize,
     },
@@ -93,7 +93,7 @@ pub struct GradientArea {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkGroup {
     /// The marks, in the order of drawing.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<PaperMark>,
     /// Area outside of which nothing is shown.
     pub clip: Option<ClipPath>,
     /// Opacity of the layer, 0 … 1.
@@ -121,7 +121,7 @@ pub struct Dimension {
     /// True if the text is just the value, with the usual sign before it.
     pub is_plain: bool,
     /// Strokes and fills: the lines, and the arrows.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<PaperMark>,
     /// The text.
     pub text: DimensionText,
 }
@@ -132,10 +132,10 @@ pub struct SheetLayer {
     /// A name such as `visible-silhouette`; unique in its sheet.
     pub name: String,
     /// The marks, in the order of drawing.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<PaperMark>,
 }
 
-impl Mark {
+impl PaperMark {
     /// Returns whether the mark is an area, which covers the marks beneath.
     pub(crate) const fn is_area(&self) -> bool {
         matches!(self, Self::Fill { .. } | Self::Area { .. } | Self::Gradient(_))

@@ -130,8 +130,11 @@ mod tests {
         let wheel = Component { name: "wheel".to_owned(), count: 2, instances: vec![0, 1, 2, 3] };
         let axle = Component { name: "axle".to_owned(), count: 1, instances: vec![4] };
         assert_eq!(found, [wheel, axle]);
-        let exploded =
-            crate::view::explode::explode(&scene, crate::view::explode::Way::Radial, None);
+        let exploded = crate::view::explode::explode(
+            &scene,
+            crate::view::explode::ExplodeDirection::Radial,
+            None,
+        );
         let places: Vec<DMat4> =
             exploded.expect("exploded").instances.iter().map(|i| i.world_from_mesh).collect();
         assert!(places[0] == places[1] && places[2] == places[3] && places[0] != places[2]);

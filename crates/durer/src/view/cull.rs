@@ -4,7 +4,7 @@
 //! Algorithms*, CACM 1976. Normals of polygons: Martin Newell, in Sutherland, Sproull and Schumacker,
 //! *A Characterization of Ten Hidden-Surface Algorithms*, ACM Computing Surveys 1974.
 
-use crate::clip::outcode::DepthRange;
+use crate::clip::outcode::ClipDepths;
 use crate::clip::volume::planes_in_source;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
@@ -139,7 +139,7 @@ impl ConvexVolume {
     }
 
     /// Returns the view volume of a matrix that takes world space to clip space.
-    pub fn frustum(clip_from_world: &DMat4, depth: DepthRange) -> Self {
+    pub fn frustum(clip_from_world: &DMat4, depth: ClipDepths) -> Self {
         Self::new(planes_in_source(clip_from_world, depth).into())
     }
 
@@ -195,7 +195,7 @@ impl ConvexVolume {
 
 /// Visible side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Face {
+pub enum FaceSide {
     /// The side from which its corners run counter-clockwise.
     Front,
     /// The other side.
@@ -222,21 +222,21 @@ pub fn triangle_area([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// Returns the side of a face that an eye at a point sees. `point` is any point of the face's
 /// plane.
-pub fn face_from_point(normal: DVec3, point: DVec3, eye: DVec3) -> Face {
+pub fn face_from_point(normal: DVec3, point: DVec3, eye: DVec3) -> FaceSide {
     side(normal.dot(eye - point))
 }
 
 /// Returns the side of a face seen along a direction, as by an orthographic camera.
-pub fn face_along(normal: DVec3, direction: DVec3) -> Face {
+pub fn face_along(normal: DVec3, direction: DVec3) -> FaceSide {
     side(-normal.dot(direction))
 }
 
-fn side(toward_eye: f64) -> Face {
+fn side(toward_eye: f64) -> FaceSide {
     if toward_eye > 0.0 {
-        Face::Front
+        FaceSide::Front
     } else if toward_eye < 0.0 {
-        Face::Back
+        FaceSide::Back
     } else {
-        Face::Edge
+        FaceSide::Edge
     }
 }

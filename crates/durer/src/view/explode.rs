@@ -12,7 +12,7 @@ use crate::{Error, Result};
 
 /// Direction in which parts are moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Way {
+pub enum ExplodeDirection {
     /// The world's x axis.
     X,
     /// The world's y axis.
@@ -23,7 +23,7 @@ pub enum Way {
     Radial,
 }
 
-impl std::str::FromStr for Way {
+impl std::str::FromStr for ExplodeDirection {
     type Err = Error;
 
     fn from_str(s: &str) -> Result<Self> {
@@ -56,7 +56,7 @@ const BESIDE: f64 = 1e-6;
 /// # Errors
 /// The errors of [`Scene::check`]; [`Error::Parameter`] for a gap that is not above 0, and for a scene of more than
 /// 4,000 instances, or of fewer than two.
-pub fn explode(scene: &Scene, way: Way, gap: Option<f64>) -> Result<Scene> {
+pub fn explode(scene: &Scene, way: ExplodeDirection, gap: Option<f64>) -> Result<Scene> {
     scene.check()?;
     if let Some(gap) = gap.filter(|g| !(*g > 0.0 && g.is_finite())) {
         return Err(Error::parameter("explode", gap, "a gap above 0"));
@@ -70,7 +70,7 @@ pub fn explode(scene: &Scene, way: Way, gap: Option<f64>) -> Result<Scene> {
     let mut exploded = scene.clone();
     let mut traces = Vec::new();
     let shifts = match way {
-        Way::Radial => away(&parts, &whole, gap),
+        ExplodeDirection::Radial => away(&parts, &whole, gap),
         _ => along(&parts, &whole, way as usize, gap, &mut traces),
     };
     for ((part, _), shift) in parts.iter().zip(shifts) {
@@ -231,7 +231,7 @@ mod tests {
             [[35.0, 5.0, 0.0], [39.0, 9.0, 24.0]],
             [[20.0, 5.0, -4.0], [24.0, 9.0, 20.0]],
         ]);
-        let found = explode(&scene, Way::Z, Some(5.0)).unwrap();
+        let found = explode(&scene, ExplodeDirection::Z, Some(5.0)).unwrap();
         let z = heights(&found);
         let places = |i: usize, low: f64, high: f64| (low + z[i], high + z[i]);
         let (lid, plate) = (places(0, 10.0, 20.0), places(1, 0.0, 10.0));
@@ -249,10 +249,10 @@ mod tests {
     #[test]
     fn parts_move_away_from_the_middle() {
         let scene = boxes(&[[[0.0; 3], [1.0; 3]], [[3.0, 0.0, 0.0], [4.0, 1.0, 1.0]]]);
-        let found = explode(&scene, Way::Radial, Some(3.0)).unwrap();
+        let found = explode(&scene, ExplodeDirection::Radial, Some(3.0)).unwrap();
         let x: Vec<f64> = found.instances.iter().map(|i| i.world_from_mesh.w_axis.x).collect();
         assert_eq!(x, [-3.0, 3.0]);
-        assert!(explode(&scene, Way::X, Some(0.0)).is_err());
-        assert!(explode(&boxes(&[[[0.0; 3], [1.0; 3]]]), Way::X, None).is_err());
+        assert!(explode(&scene, ExplodeDirection::X, Some(0.0)).is_err());
+        assert!(explode(&boxes(&[[[0.0; 3], [1.0; 3]]]), ExplodeDirection::X, None).is_err());
     }
 }

@@ -45,7 +45,7 @@ pub const REACH: f64 = 3.0;
 
 /// A part of the screen, in pixels, x right and y down; pixel (0, 0) is the square from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Area {
+pub enum PickArea {
     /// All that covers a point.
     Point(DVec2),
     /// All that reaches into a rectangle. One without width or height contains nothing.
@@ -133,12 +133,17 @@ fn sort(hits: &mut [Hit]) {
 /// Returns the triangles, lines and points behind an area of the screen, whether others hide them or
 /// not, from either side; nearest first, of equally near ones the lower item. Triangles that are seen
 /// edge on under a point are not picked.
-pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
+pub fn pick(scene: &Scene, view: &View, area: PickArea) -> Vec<Hit> {
     pick_traced(scene, view, area, &mut NoTrace)
 }
 
 /// Picks as [`pick`] does, with a tracer.
-pub fn pick_traced(scene: &Scene, view: &View, area: Area, t: &mut impl Tracer<Step>) -> Vec<Hit> {
+pub fn pick_traced(
+    scene: &Scene,
+    view: &View,
+    area: PickArea,
+    t: &mut impl Tracer<Step>,
+) -> Vec<Hit> {
     let Some(around) = window(area) else { return Vec::new() };
     let pick_from_world = pick_from_screen(&around) * view.screen_from_world();
     let boxes: Vec<Option<Aabb>> = scene
@@ -168,15 +173,15 @@ pub fn pick_traced(scene: &Scene, view: &View, area: Area, t: &mut impl Tracer<S
             let found = if mesh.topology == Topology::Triangles {
                 let corners = corners(mesh, primitive);
                 match area {
-                    Area::Point(p) => at_point(&corners, &screen_from_mesh, p),
-                    Area::Rect(_) => in_window(&corners, &pick_from_mesh),
+                    PickArea::Point(p) => at_point(&corners, &screen_from_mesh, p),
+                    PickArea::Rect(_) => in_window(&corners, &pick_from_mesh),
                 }
             } else {
                 let ends = mesh.line_or_point(primitive);
                 let ends = ends.map(|v| mesh.positions[v as usize].as_dvec3());
                 match area {
-                    Area::Point(p) => near_point(&ends, &pick_from_mesh, &screen_from_mesh, p),
-                    Area::Rect(_) => mark_in_window(&ends, &pick_from_mesh),
+                    PickArea::Point(p) => near_point(&ends, &pick_from_mesh, &screen_from_mesh, p),
+                    PickArea::Rect(_) => mark_in_window(&ends, &pick_from_mesh),
                 }
             };
             let hit = found.map(|(depth, position)| {
@@ -221,11 +226,11 @@ pub fn objects(hits: &[Hit]) -> Vec<Object> {
 }
 
 /// Returns the rectangle whose frustum holds everything that may be hit.
-fn window(area: Area) -> Option<Rect> {
+fn window(area: PickArea) -> Option<Rect> {
     match area {
         // Wide enough to be free of rounding.
-        Area::Point(p) => Rect::new(p - DVec2::splat(REACH), p + DVec2::splat(REACH)).ok(),
-        Area::Rect(rect) => (rect.size().x > 0.0 && rect.size().y > 0.0).then_some(rect),
+        PickArea::Point(p) => Rect::new(p - DVec2::splat(REACH), p + DVec2::splat(REACH)).ok(),
+        PickArea::Rect(rect) => (rect.size().x > 0.0 && rect.size().y > 0.0).then_some(rect),
     }
 }
 

@@ -57,7 +57,7 @@ const HALF_SIDE: f64 = 0.5 + 1.0 / 16.0;
 
 /// A picture with depth and the camera it was made with.
 #[derive(Debug, Clone, Copy)]
-pub struct Source<'a> {
+pub struct DepthPicture<'a> {
     /// 8-bit sRGB with straight alpha.
     pub color: &'a Pixels<[u8; 4]>,
     /// Window depth 0 (near) … 1 (far), 1 at the background; of the same size.
@@ -136,7 +136,7 @@ pub const HOLE: u32 = u32::MAX;
 /// [`Error::Parameter`] if a picture's depth has another size than its colours, or a camera cannot
 /// see ([`Camera::check`]).
 pub fn warp(
-    sources: &[Source<'_>],
+    sources: &[DepthPicture<'_>],
     camera: &Camera,
     [width, height]: [u32; 2],
     options: &Options,
@@ -189,7 +189,7 @@ impl Layer {
     /// Moves all pixels of one source into the new view.
     fn of(
         index: u32,
-        source: &Source<'_>,
+        source: &DepthPicture<'_>,
         (view, work): (&View, &Work),
         t: &mut impl Tracer<Step>,
     ) -> Result<Self> {

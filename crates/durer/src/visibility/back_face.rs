@@ -31,7 +31,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::scene::{Camera, Mesh, Projection, Scene};
 use crate::trace::{PseudocodeLine, Tracer};
-use crate::view::cull::{Face, face_along, face_from_point, newell_area, triangle_area};
+use crate::view::cull::{FaceSide, face_along, face_from_point, newell_area, triangle_area};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -76,7 +76,7 @@ impl Eye {
     }
 
     /// Returns the side of a face that is seen from here.
-    pub(crate) fn side(self, normal: DVec3, point: DVec3) -> Face {
+    pub(crate) fn side(self, normal: DVec3, point: DVec3) -> FaceSide {
         match self {
             Self::At(eye) => face_from_point(normal, point, eye),
             Self::Along(direction) => face_along(normal, direction),
@@ -111,14 +111,14 @@ pub enum Step {
         /// Its vector area by Newell's method: along its normal, as long as its area.
         area: DVec3,
         /// The side that is seen.
-        side: Face,
+        side: FaceSide,
     },
 }
 
 impl PseudocodeLine for Step {
     fn line(&self) -> usize {
         let Self::Tested { side, .. } = self;
-        if *side == Face::Front { 7 } else { 8 }
+        if *side == FaceSide::Front { 7 } else { 8 }
     }
 }
 
@@ -186,9 +186,9 @@ fn stays(
     let side = eye.side(area, point);
     t.step(|| Step::Tested { face, area, side });
     match side {
-        Face::Front => true,
-        Face::Edge => options.keep_edge_on,
-        Face::Back => false,
+        FaceSide::Front => true,
+        FaceSide::Edge => options.keep_edge_on,
+        FaceSide::Back => false,
     }
 }
 

@@ -10,11 +10,11 @@ use durer::shade::{PreparedLights, color};
 use durer::target::Framebuffer;
 use durer::trace::Recorder;
 use durer::view::View;
-use durer::visibility::surface::Filter;
 use durer::visibility::surface::SurfaceInput;
-use durer::visibility::surface::a_buffer::{self, Mask, Options, Step};
+use durer::visibility::surface::TriangleFilter;
+use durer::visibility::surface::a_buffer::{self, Options, Step, SubpixelMask};
 
-const FILTER: Filter = Filter::new(durer::pipeline::Cull::None, 128);
+const FILTER: TriangleFilter = TriangleFilter::new(durer::pipeline::Cull::None, 128);
 
 fn flat(rgba: Vec4) -> Material {
     let alpha_mode = if rgba.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
@@ -75,7 +75,7 @@ fn errors(scene: &Scene, camera: Camera, side: u32) -> [f64; 4] {
         error_at_edges(&linear(&render(scene, &view, &options).0), &truth)
     };
     let by_samples = |scale| error_at_edges(&sampled(scene, camera, side, scale), &truth);
-    [by_mask(Mask::M16), by_samples(1), by_mask(Mask::M64), by_samples(2)]
+    [by_mask(SubpixelMask::M16), by_samples(1), by_mask(SubpixelMask::M64), by_samples(2)]
 }
 
 fn assert_better(errors: [f64; 4], what: &str) {
@@ -169,7 +169,7 @@ fn blended_surfaces_are_composed_as_if_sorted() {
     let expected = far_to_near
         .iter()
         .fold(Vec4::ONE, |under, c| c.truncate().extend(1.0) * c.w + under * (1.0 - c.w));
-    for mask in [Mask::M16, Mask::M64] {
+    for mask in [SubpixelMask::M16, SubpixelMask::M64] {
         let (found, _) = render(&scene, &view, &Options { mask, ..Options::default() });
         for pixel in found.color.data() {
             for (found, expected) in pixel.iter().zip(color::encode_rgba8(expected)) {
@@ -283,7 +283,7 @@ fn faces(triangles: &[(Corners, Vec3)]) -> Scene {
 
 /// Returns the linear grey of pixel (2, 3) by both masks.
 fn grey(scene: &Scene) -> [f64; 2] {
-    [Mask::M16, Mask::M64].map(|mask| {
+    [SubpixelMask::M16, SubpixelMask::M64].map(|mask| {
         let options = Options { mask, ..Options::default() };
         linear(&render(scene, &upright(), &options).0)[3 * 8 + 2]
     })

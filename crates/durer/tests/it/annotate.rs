@@ -2,16 +2,17 @@
 
 use crate::line_scenes::{Random, Triangle, cuboid, cylinder, soup, view};
 use durer::annotate::{
-    Along, Annotations, Feature, Place, Request, Shown, Side, Thread, What, annotate, features,
+    Along, Annotations, FeaturePlace, Request, RoundFeature, Shown, Thread, ViewSide, What,
+    annotate, features,
 };
 use durer::math::{DVec2, DVec3, Rect};
 use durer::paper::{LaidOut, Options, dimension_strokes, lay_out};
 use durer::scene::Scene;
-use durer::target::Piece;
+use durer::target::CurvePiece;
 use durer::target::dimension::Measure;
 use durer::target::drawing::Drawing;
 use durer::target::sheet::Dimension;
-use durer::target::sheet::Mark;
+use durer::target::sheet::PaperMark;
 use durer::trace::NoTrace;
 use durer::visibility::line::hidden_line::{self, draw};
 use durer::visibility::object::Faces;
@@ -51,7 +52,7 @@ fn put(
     drawing: &Drawing,
     wanted: &Annotations,
 ) -> durer::Result<Vec<String>> {
-    let features: Vec<Feature> = features(scene, &Faces::new(scene).expect("faces"));
+    let features: Vec<RoundFeature> = features(scene, &Faces::new(scene).expect("faces"));
     let shown = Shown {
         views: &laid.views,
         drawings: &[drawing],
@@ -63,14 +64,14 @@ fn put(
     annotate(&mut laid.sheet, wanted, &shown)
 }
 
-fn marks<'a>(laid: &'a LaidOut, layer: &str) -> &'a [Mark] {
+fn marks<'a>(laid: &'a LaidOut, layer: &str) -> &'a [PaperMark] {
     laid.sheet.layers.iter().find(|l| l.name == layer).map_or(&[], |l| &l.marks)
 }
 
 fn dimensions(laid: &LaidOut) -> Vec<&Dimension> {
-    let of = |m: &'_ Mark| matches!(m, Mark::Dimension(_));
+    let of = |m: &'_ PaperMark| matches!(m, PaperMark::Dimension(_));
     let all = marks(laid, "dimension").iter().filter(|m| of(m));
-    all.filter_map(|m| if let Mark::Dimension(d) = m { Some(&**d) } else { None }).collect()
+    all.filter_map(|m| if let PaperMark::Dimension(d) = m { Some(&**d) } else { None }).collect()
 }
 
 fn texts(laid: &LaidOut) -> Vec<&str> {
@@ -80,7 +81,7 @@ fn texts(laid: &LaidOut) -> Vec<&str> {
 }
 
 fn linear(from: DVec3, to: DVec3, along: Along) -> Request {
-    let what = What::Linear { from: Place::Point(from), to: Place::Point(to), along };
+    let what = What::Linear { from: FeaturePlace::Point(from), to: FeaturePlace::Point(to), along };
     Request { what, view: None, side: None, text: None }
 }
 
@@ -118,8 +119,8 @@ fn centers_are_crosses_or_lines() {
     let wanted = Annotations { center_lines: true, ..Annotations::default() };
     let (laid, _) = annotated(&plate(), TOP, &wanted);
     let lengths = |laid: &LaidOut| -> Vec<f64> {
-        let of = |m: &Mark| match m {
-            Mark::Stroke { points, .. } => points[0].distance(points[1]),
+        let of = |m: &PaperMark| match m {
+            PaperMark::Stroke { points, .. } => points[0].distance(points[1]),
             _ => panic!("{m:?}"),
         };
         let mut all: Vec<f64> = marks(laid, "center").iter().map(of).collect();
@@ -140,14 +141,14 @@ fn centers_are_crosses_or_lines() {
 
 #[test]
 fn requests_say_what_they_measure() {
-    let named = |name: &str| Place::Feature(name.to_owned());
+    let named = |name: &str| FeaturePlace::Feature(name.to_owned());
     let request = |what| Request { what, view: None, side: None, text: None };
     let between =
         What::Linear { from: named("boss 1"), to: named("boss 2"), along: Along::Straight };
     let angle = What::Angle {
-        vertex: Place::Point(DVec3::ZERO),
-        from: Place::Point(DVec3::new(80.0, 0.0, 0.0)),
-        to: Place::Point(DVec3::new(80.0, 40.0, 0.0)),
+        vertex: FeaturePlace::Point(DVec3::ZERO),
+        from: FeaturePlace::Point(DVec3::new(80.0, 0.0, 0.0)),
+        to: FeaturePlace::Point(DVec3::new(80.0, 40.0, 0.0)),
     };
     let wanted = Annotations {
         dimensions: vec![
@@ -200,8 +201,8 @@ fn a_thread_is_three_quarters_of_a_circle_or_two_lines() {
     let wanted = Annotations { threads, bosses: true, ..Annotations::default() };
     let (laid, notes) = annotated(&scene, TOP, &wanted);
     assert_eq!((texts(&laid), notes.len()), (vec!["M8"], 0), "{notes:?}");
-    let [Mark::Curve { curve, .. }] = marks(&laid, "thread") else { panic!("one arc") };
-    let [Piece::Arc(arc, _)] = curve.pieces[..] else { panic!("{curve:?}") };
+    let [PaperMark::Curve { curve, .. }] = marks(&laid, "thread") else { panic!("one arc") };
+    let [CurvePiece::Arc(arc, _)] = curve.pieces[..] else { panic!("{curve:?}") };
     let center = laid.views[0].sheet_from_model(DVec3::new(40.0, 20.0, 0.0)).expect("seen");
     // The core diameter of M8: 8 − 1.0825 · 1.25.
     assert!((arc.radii().x - 6.6468 / 2.0).abs() < 1e-3 && arc.center.distance(center) < 1e-3);
@@ -223,8 +224,13 @@ fn texts_keep_clear_of_each_other_and_of_lines() {
             let mut next = |size: f64| (random.next() * size).round();
             DVec3::new(next(80.0), next(40.0), 6.0)
         };
-        let sides =
-            [None, Some(Side::Above), Some(Side::Below), Some(Side::Left), Some(Side::Right)];
+        let sides = [
+            None,
+            Some(ViewSide::Above),
+            Some(ViewSide::Below),
+            Some(ViewSide::Left),
+            Some(ViewSide::Right),
+        ];
         let mut requests: Vec<Request> = Vec::new();
         while requests.len() < 7 {
             let (p, q) = (point(), point());
@@ -263,9 +269,9 @@ fn lines_end_before_text() {
     // A dimension of the middle peg; its text is on the plate's centre line.
     let note = Request {
         what: What::Angle {
-            vertex: Place::Point(DVec3::new(20.0, 20.0, 6.0)),
-            from: Place::Point(DVec3::new(80.0, 10.0, 6.0)),
-            to: Place::Point(DVec3::new(80.0, 30.0, 6.0)),
+            vertex: FeaturePlace::Point(DVec3::new(20.0, 20.0, 6.0)),
+            from: FeaturePlace::Point(DVec3::new(80.0, 10.0, 6.0)),
+            to: FeaturePlace::Point(DVec3::new(80.0, 30.0, 6.0)),
         },
         view: None,
         side: None,
@@ -278,7 +284,7 @@ fn lines_end_before_text() {
     let inside = |p: DVec2| p.cmpgt(text.min()).all() && p.cmplt(text.max()).all();
     for layer in laid.sheet.layers.iter().filter(|l| l.name != "dimension") {
         for mark in &layer.marks {
-            let Mark::Stroke { points, .. } = mark else { continue };
+            let PaperMark::Stroke { points, .. } = mark else { continue };
             for w in points.windows(2) {
                 let steps = (0..=100).map(|i| w[0].lerp(w[1], f64::from(i) / 100.0));
                 assert!(!steps.into_iter().any(inside), "{}: {w:?} in {text:?}", layer.name);

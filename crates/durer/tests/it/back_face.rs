@@ -9,15 +9,15 @@ use durer::scene::{Camera, Mesh, Projection, Scene};
 use durer::target::NO_ITEM;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::view::cull::Face;
+use durer::view::cull::FaceSide;
 use durer::visibility::back_face::{Eye, Options, Step, remove, remove_of_scene};
 use durer::visibility::surface::SurfaceInput;
 use durer::visibility::surface::scan_line_z;
-use durer::visibility::surface::{Filter, ScreenTriangle};
+use durer::visibility::surface::{ScreenTriangle, TriangleFilter};
 use proptest::prelude::*;
 
 fn input<'a>(scene: &'a Scene, view: &'a View, cull: Cull) -> SurfaceInput<'a> {
-    SurfaceInput::new(scene, view, Filter::new(cull, 128)).expect("input")
+    SurfaceInput::new(scene, view, TriangleFilter::new(cull, 128)).expect("input")
 }
 
 /// Returns whether rounding its corners to the grid can have reversed a triangle: each corner moves by half a step at
@@ -232,7 +232,7 @@ proptest! {
         let kept = remove(given(), eye, &options, &mut recorder);
         prop_assert_eq!(&kept, &remove(given(), eye, &options, &mut NoTrace));
         let replayed: Vec<usize> = recorder.steps().iter()
-            .filter(|Step::Tested { side, .. }| *side == Face::Front)
+            .filter(|Step::Tested { side, .. }| *side == FaceSide::Front)
             .map(|Step::Tested { face, .. }| *face)
             .collect();
         prop_assert_eq!(&kept, &replayed);

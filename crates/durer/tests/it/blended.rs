@@ -8,7 +8,7 @@ use durer::scene::{AlphaMode, Camera, Material, Part, Projection, Scene, Shading
 use durer::shade::color::{encode_rgba8, premultiply};
 use durer::target::Framebuffer;
 use durer::trace::NoTrace;
-use durer::visibility::surface::a_buffer::Mask;
+use durer::visibility::surface::a_buffer::SubpixelMask;
 use durer::visibility::surface::warnock;
 
 /// Returns random triangles, every second one blended, unlit.
@@ -135,7 +135,7 @@ fn the_a_buffer_is_sorted_compositing() {
             far: 3.0,
         };
         panes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for mask in [Mask::M16, Mask::M64] {
+        for mask in [SubpixelMask::M16, SubpixelMask::M64] {
             let mut options = RenderOptions {
                 algorithm: SurfaceMethod::ABuffer,
                 mask,

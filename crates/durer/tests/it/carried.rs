@@ -20,7 +20,7 @@ fn net(triangles: &[Triangle], eye: Eye) -> FaceNet {
     FaceNet::new(&faces, eye).unwrap()
 }
 
-fn by_numbers(net: &FaceNet) -> Vec<appel::Line> {
+fn by_numbers(net: &FaceNet) -> Vec<appel::AppelEdge> {
     let mut steps = Recorder::default();
     let lines = appel::draw(net, &appel::Options::default(), &Work::default(), &mut steps).unwrap();
     assert_eq!(
@@ -31,7 +31,7 @@ fn by_numbers(net: &FaceNet) -> Vec<appel::Line> {
     lines
 }
 
-fn by_sets(net: &FaceNet) -> Vec<natures::Line> {
+fn by_sets(net: &FaceNet) -> Vec<natures::GalimbertiEdge> {
     let mut steps = Recorder::default();
     let lines =
         natures::draw(net, &natures::Options::default(), &Work::default(), &mut steps).unwrap();
@@ -201,7 +201,7 @@ fn a_plate_hides_the_middle_of_a_bar() {
     // One ray for each body; everything else is carried along edges.
     let rays = steps.steps().iter().filter(|step| matches!(step, appel::Step::Ray { .. }));
     assert_eq!(rays.count(), 2);
-    let front = |line: &&appel::Line| {
+    let front = |line: &&appel::AppelEdge| {
         line.ends.iter().all(|p| p.z == 1.0) && line.ends[0].distance(line.ends[1]) == 10.0
     };
     let long: Vec<_> = lines.iter().filter(front).collect();
@@ -234,7 +234,8 @@ fn open_surfaces_have_natures_but_no_numbers() {
     let seen: f64 = lines.iter().flat_map(|line| line.visible()).map(|[p, q]| p.distance(q)).sum();
     // The lower of the two is covered by the next one in a square of three by three.
     assert!((seen - (16.0 + 10.0 + 10.0)).abs() < 1e-4, "{seen}");
-    let both = |line: &&natures::Line| line.parts.iter().any(|part| part.nature == [1, 2]);
+    let both =
+        |line: &&natures::GalimbertiEdge| line.parts.iter().any(|part| part.nature == [1, 2]);
     assert_eq!(lines.iter().filter(both).count(), 2);
 }
 

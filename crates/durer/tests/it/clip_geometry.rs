@@ -5,7 +5,7 @@ use durer::clip::mask::{Rules, Union, is_valid, match_points};
 use durer::clip::polygon::{Shapes, WindingRule};
 use durer::clip::simplify::{Amount, Dropped, LineSimplifier, simplify};
 use durer::clip::tiles::{
-    Body, Coordinates, Feature, Reach, Shape, Subject, Tile, Tiling, extent, place,
+    Coordinates, GridShape, Reach, Subject, Tile, TileBody, TileFeature, Tiling, extent, place,
 };
 use durer::geometry::{Dimensions, Geometry, Points};
 use durer::math::{DVec2, I64Vec2, Rect};
@@ -187,8 +187,8 @@ fn edges_go_the_long_way_unless_asked_otherwise() {
 fn extents_are_those_within_the_world() {
     let of = |at: &[At]| {
         let place = |&p: &At| durer::clip::tiles::mercator::project(p.into());
-        let body = Body::Points(at.iter().map(place).collect());
-        let found = extent(&[Feature { layer: 0, body, fill: WindingRule::EvenOdd }]);
+        let body = TileBody::Points(at.iter().map(place).collect());
+        let found = extent(&[TileFeature { layer: 0, body, fill: WindingRule::EvenOdd }]);
         found.map(|e| e.map(|v| v.round()))
     };
     assert_eq!(of(&[(-10.0, 20.0), (30.0, -40.0)]), Some([-10.0, -40.0, 30.0, 20.0]));
@@ -200,11 +200,11 @@ fn extents_are_those_within_the_world() {
 fn shapes_of_tiles_go_back_to_degrees() {
     let corners = [(0, 0), (0, 4096), (4096, 4096), (4096, 0)].map(|(x, y)| I64Vec2::new(x, y));
     let tile = Tile { zoom: 1, x: 1, y: 0 };
-    let degrees = Shape::Areas(Shapes::from_rings([corners])).in_degrees(tile, 4096);
+    let degrees = GridShape::Areas(Shapes::from_rings([corners])).in_degrees(tile, 4096);
     let bounds = degrees.bounds().expect("a place");
     assert_eq!([bounds.min().x, bounds.min().y, bounds.max().x], [0.0, 0.0, 180.0]);
     assert_eq!(bounds.max().y.round(), 85.0);
-    let one = Shape::Points(vec![corners[0]]).in_degrees(tile, 4096);
+    let one = GridShape::Points(vec![corners[0]]).in_degrees(tile, 4096);
     assert_eq!(one.name(), "Point");
 }
 
@@ -230,10 +230,10 @@ fn tiles_cut_geometries_as_they_are() {
 
 #[test]
 fn places_go_to_the_nearest_cells_halves_up() {
-    let body = Body::Points([(0.5, -0.5), (1.4, -1.5), (0.49, 2.0)].map(DVec2::from).into());
+    let body = TileBody::Points([(0.5, -0.5), (1.4, -1.5), (0.49, 2.0)].map(DVec2::from).into());
     let cells = [(1, 0), (1, -1), (0, 2)].map(|(x, y)| I64Vec2::new(x, y));
     let snapped = |origin| body.snapped(origin, WindingRule::EvenOdd);
-    assert_eq!(snapped(I64Vec2::ZERO), Ok(Shape::Points(cells.into())));
+    assert_eq!(snapped(I64Vec2::ZERO), Ok(GridShape::Points(cells.into())));
     let moved = cells.map(|cell| cell - I64Vec2::new(3, -1));
-    assert_eq!(snapped(I64Vec2::new(3, -1)), Ok(Shape::Points(moved.into())));
+    assert_eq!(snapped(I64Vec2::new(3, -1)), Ok(GridShape::Points(moved.into())));
 }

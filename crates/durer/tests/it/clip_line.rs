@@ -1,6 +1,6 @@
 //! Line clipping where errors of rounding, of the number range and of array ends would show.
 
-use durer::clip::attribute::Source;
+use durer::clip::attribute::VertexSource;
 use durer::clip::line::batch::{self, Clipped, Segments};
 use durer::clip::line::homogeneous::clip_homogeneous;
 use durer::clip::line::sobkow_pospisil_yang::{self as by_code, CASES, Case};
@@ -8,7 +8,7 @@ use durer::clip::line::{ConvexPolygon, End, LineClipper, Segment, cyrus_beck, sk
 use durer::clip::outcode::Outcode;
 use durer::clip::polygon::Shapes;
 use durer::clip::polygon::rectangle::clip_lines;
-use durer::clip::polyline::{self, Part};
+use durer::clip::polyline::{self, KeptPart};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::trace::{NoTrace, Recorder};
 use std::cmp::Ordering;
@@ -26,12 +26,12 @@ fn sources_name_the_ends_that_are_kept() {
     let line = [p(-1.0, 0.5), p(0.5, 0.5), p(1.0, 1.0), p(3.0, 1.0)];
     let cut = clip_lines(&unit(), &line, &[4], true).expect("clipped");
     assert_eq!(cut.points, [p(0.0, 0.5), p(0.5, 0.5), p(1.0, 1.0)]);
-    let entry = Source::Cut { from: 0, to: 1, t: 2.0 / 3.0 };
-    assert_eq!(cut.sources, [entry, Source::Vertex(1), Source::Vertex(2)]);
+    let entry = VertexSource::Cut { from: 0, to: 1, t: 2.0 / 3.0 };
+    assert_eq!(cut.sources, [entry, VertexSource::Vertex(1), VertexSource::Vertex(2)]);
     // If a segment comes from outside and ends on the border, its end is a vertex too.
     for line in [[p(-1.0, 0.5), p(1.0, 0.5)], [p(1.0, 0.5), p(-1.0, 0.5)]] {
         let cut = clip_lines(&unit(), &line, &[2], true).expect("clipped");
-        let vertices = cut.sources.iter().filter(|s| matches!(s, Source::Vertex(_))).count();
+        let vertices = cut.sources.iter().filter(|s| matches!(s, VertexSource::Vertex(_))).count();
         assert_eq!(vertices, 1, "{:?}", cut.sources);
     }
 }
@@ -43,7 +43,7 @@ fn cuts_of_huge_segments_lie_between_their_ends() {
         let cut = clip_lines(&unit(), &[a, b], &[2], true).expect("clipped");
         assert_eq!(cut.sources.len(), 2);
         for source in cut.sources {
-            let Source::Cut { t, .. } = source else { panic!("{source:?}") };
+            let VertexSource::Cut { t, .. } = source else { panic!("{source:?}") };
             assert!((t - 0.5).abs() < 1e-12, "{t}");
         }
     }
@@ -186,7 +186,7 @@ fn pieces_never_reach_beyond_their_segment() {
         // A border that the segment crosses less than an ulp before its end.
         let border = [p(to.next_down(), -1.0), p(to, 1.0), p(to + 9.0, 1.0), p(to + 9.0, -1.0)];
         let polygon = Shapes::from_rings([border]);
-        for part in [Part::Inside, Part::Outside] {
+        for part in [KeptPart::Inside, KeptPart::Outside] {
             for line in [[p(from, 0.0), p(to, 0.0)], [p(to, 0.0), p(from, 0.0)]] {
                 let options = polyline::Options { part };
                 let out = polyline::clip(&polygon, &line, &[2], &options, &mut NoTrace);

@@ -1,6 +1,6 @@
 //! Five places in the pipeline to clip, one picture.
 
-use durer::clip::outcode::{DepthRange, Outcode};
+use durer::clip::outcode::{ClipDepths, Outcode};
 use durer::clip::place::{ClipPlace, EYE, NdcVertex, clip};
 use durer::clip::volume::Step;
 use durer::math::{DMat4, DVec2, DVec3, DVec4};
@@ -95,7 +95,7 @@ proptest! {
     fn all_places_light_the_same_pixels(t in [point(), point(), point()], perspective: bool) {
         let matrix = camera(perspective);
         let polygon = t.map(|p| (p, p));
-        let depth = DepthRange::NegativeOneToOne;
+        let depth = ClipDepths::NegativeOneToOne;
         let clipped: Vec<Vec<NdcVertex<DVec3>>> = ClipPlace::ALL
             .iter()
             .map(|&place| clip(place, &polygon, &matrix, depth, &mut NoTrace))
@@ -135,7 +135,7 @@ proptest! {
     fn tracing_changes_no_output(t in [point(), point(), point()], perspective: bool) {
         let polygon = t.map(|p| (p, ()));
         for &place in ClipPlace::ALL {
-            for depth in [DepthRange::NegativeOneToOne, DepthRange::ZeroToOne] {
+            for depth in [ClipDepths::NegativeOneToOne, ClipDepths::ZeroToOne] {
                 let matrix = camera(perspective);
                 let mut steps = Recorder::default();
                 let traced = clip(place, &polygon, &matrix, depth, &mut steps);
@@ -177,7 +177,7 @@ proptest! {
         let matrix = camera(perspective);
         for &place in ClipPlace::ALL {
             let mut steps = Recorder::default();
-            let depth = DepthRange::NegativeOneToOne;
+            let depth = ClipDepths::NegativeOneToOne;
             let found = clip(place, &t.map(|p| (p, ())), &matrix, depth, &mut steps);
             let input = t.map(|p| p.extend(1.0));
             let replayed: Vec<DVec3> = match place {
@@ -210,7 +210,7 @@ fn differing_pixels_are_rare() {
             (DVec3::new(random() * 8.0 - 4.0, random() * 8.0 - 4.0, random() * 12.0 - 6.0), ())
         });
         let [world, clip_space, divided] = [0, 1, 2].map(|k| {
-            let depth = DepthRange::NegativeOneToOne;
+            let depth = ClipDepths::NegativeOneToOne;
             let ring = clip(ClipPlace::ALL[k], &t, &camera(true), depth, &mut NoTrace);
             pixels(&ring.iter().map(on_screen).collect::<Vec<_>>())
         });
@@ -229,7 +229,7 @@ fn a_triangle_that_spans_the_eye_plane_is_cut_everywhere() {
     let floor = [(-9.0, -0.5, -4.0), (9.0, -0.5, -4.0), (0.0, -0.5, 30.0)];
     let floor = floor.map(|p| (DVec3::from(p), ()));
     for &place in ClipPlace::ALL {
-        let ring = clip(place, &floor, &camera(true), DepthRange::NegativeOneToOne, &mut NoTrace);
+        let ring = clip(place, &floor, &camera(true), ClipDepths::NegativeOneToOne, &mut NoTrace);
         let lit = pixels(&ring.iter().map(on_screen).collect::<Vec<_>>());
         assert!(lit.contains(&(SIDE / 2, SIDE - 1)) && !lit.contains(&(SIDE / 2, 0)), "{place}");
     }
@@ -243,12 +243,12 @@ fn odd_matrices_and_points_do_no_harm() {
         for matrix in
             [DMat4::ZERO, DMat4::IDENTITY * f64::NAN, DMat4::from_cols_array(&[1e300; 16])]
         {
-            for depth in [DepthRange::NegativeOneToOne, DepthRange::ZeroToOne] {
+            for depth in [ClipDepths::NegativeOneToOne, ClipDepths::ZeroToOne] {
                 let ring = clip(place, &triangle, &matrix, depth, &mut NoTrace);
                 assert!(ring.iter().all(|v| v.position.is_finite()), "{place} {ring:?}");
             }
         }
-        let depth = DepthRange::NegativeOneToOne;
+        let depth = ClipDepths::NegativeOneToOne;
         assert!(clip(place, &nan, &DMat4::IDENTITY, depth, &mut NoTrace).is_empty());
         assert!(clip::<()>(place, &[], &DMat4::IDENTITY, depth, &mut NoTrace).is_empty());
     }

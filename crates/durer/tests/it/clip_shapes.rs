@@ -4,7 +4,7 @@ use crate::raster_coverage::Random;
 use durer::clip::circle::{self, Arc, Circle};
 use durer::clip::outcode::Outcode;
 use durer::clip::polygon::{self, PolygonClipper, Shapes, WindingRule};
-use durer::clip::text::{self, Character, Kept, Options, Place, TextClipper, of_strokes};
+use durer::clip::text::{self, BoxPlace, Character, Kept, Options, TextClipper, of_strokes};
 use durer::curve::Contours;
 use durer::math::{DVec2, Rect};
 use durer::trace::{NoTrace, PseudocodeLine, Recorder};
@@ -264,8 +264,14 @@ fn boxes_decide_before_outlines() {
         };
         steps.steps().iter().filter_map(place).collect::<Vec<_>>()
     };
-    assert_eq!(places(TextClipper::String), [(None, Place::Crossing)]);
-    let each = [Place::Crossing, Place::Within, Place::Within, Place::Crossing, Place::Beyond];
+    assert_eq!(places(TextClipper::String), [(None, BoxPlace::Crossing)]);
+    let each = [
+        BoxPlace::Crossing,
+        BoxPlace::Within,
+        BoxPlace::Within,
+        BoxPlace::Crossing,
+        BoxPlace::Beyond,
+    ];
     let each: Vec<_> = each.into_iter().enumerate().map(|(k, place)| (Some(k), place)).collect();
     assert_eq!(places(TextClipper::Character), each);
     assert_eq!(places(TextClipper::Outline), each);

@@ -2,12 +2,12 @@
 
 use durer::clip::polygon::validity::flaws;
 use durer::clip::polygon::{Shapes, WindingRule};
-use durer::clip::tiles::{Body, Feature, Options, Piece, Pyramid, Shape, Tile};
+use durer::clip::tiles::{GridShape, Options, Pyramid, Tile, TileBody, TileFeature, TilePiece};
 use durer::math::{DVec2, I64Vec2};
 use durer::{Error, Result};
 use proptest::prelude::*;
 
-fn tiles(features: Vec<Feature>, options: &Options) -> Result<Vec<(Tile, Vec<Piece>)>> {
+fn tiles(features: Vec<TileFeature>, options: &Options) -> Result<Vec<(Tile, Vec<TilePiece>)>> {
     let pyramid = Pyramid::new(features, options.clone())?;
     let mut found = Vec::new();
     for zoom in options.zooms.clone() {
@@ -36,16 +36,16 @@ fn places() -> impl Strategy<Value = Vec<DVec2>> {
     prop::collection::vec(place, 1..12)
 }
 
-fn features() -> impl Strategy<Value = Vec<Feature>> {
+fn features() -> impl Strategy<Value = Vec<TileFeature>> {
     let body = (0..3, places(), places()).prop_map(|(kind, points, others)| match kind {
-        0 => Body::Points(points),
+        0 => TileBody::Points(points),
         1 => {
             let ends = vec![points.len(), points.len() + others.len()];
-            Body::Lines { points: [points, others].concat(), ends }
+            TileBody::Lines { points: [points, others].concat(), ends }
         }
-        _ => Body::Areas(Shapes::from_rings([points, others])),
+        _ => TileBody::Areas(Shapes::from_rings([points, others])),
     });
-    let feature = (0..2usize, body).prop_map(|(layer, body)| Feature {
+    let feature = (0..2usize, body).prop_map(|(layer, body)| TileFeature {
         layer,
         body,
         fill: WindingRule::EvenOdd,
@@ -69,12 +69,12 @@ proptest! {
         let inside = |p: &I64Vec2| p.min_element() >= low && p.max_element() <= high;
         for piece in found.iter().flat_map(|(_, pieces)| pieces) {
             match &piece.shape {
-                Shape::Points(points) => prop_assert!(!points.is_empty() && points.iter().all(inside)),
-                Shape::Lines(lines) => {
+                GridShape::Points(points) => prop_assert!(!points.is_empty() && points.iter().all(inside)),
+                GridShape::Lines(lines) => {
                     prop_assert!(lines.iter().flatten().all(inside));
                     prop_assert!(lines.iter().all(|l| l.len() > 1 && l.windows(2).all(|w| w[0] != w[1])));
                 }
-                Shape::Areas(shapes) => {
+                GridShape::Areas(shapes) => {
                     prop_assert!(shapes.points().iter().all(inside) && shapes.area() > 0.0);
                     let points = |ring: &[I64Vec2]| ring.iter().map(|p| p.as_dvec2()).collect::<Vec<_>>();
                     let mut whole = Shapes::new();
@@ -89,12 +89,12 @@ proptest! {
     }
 }
 
-fn square(x: f64, y: f64, side: f64) -> Feature {
+fn square(x: f64, y: f64, side: f64) -> TileFeature {
     let corners =
         [(0., 0.), (side, 0.), (side, side), (0., side)].map(|(u, v)| DVec2::new(x + u, y + v));
-    Feature {
+    TileFeature {
         layer: 0,
-        body: Body::Areas(Shapes::from_rings([corners])),
+        body: TileBody::Areas(Shapes::from_rings([corners])),
         fill: WindingRule::EvenOdd,
     }
 }
@@ -105,8 +105,8 @@ fn areas_are_divided_among_tiles() {
     let found = tiles(vec![square(0.3, 0.2, 0.45)], &options).unwrap();
     for zoom in 0..=4u8 {
         let side = 4096.0 * f64::from(1 << zoom);
-        let area = |piece: &Piece| match &piece.shape {
-            Shape::Areas(shapes) => shapes.area(),
+        let area = |piece: &TilePiece| match &piece.shape {
+            GridShape::Areas(shapes) => shapes.area(),
             _ => 0.0,
         };
         let level = found.iter().filter(|(tile, _)| tile.zoom == zoom);
@@ -120,9 +120,9 @@ fn a_pyramid_with_fewer_levels_has_the_tiles_of_one_made_with_them() {
     // A wave whose points appear level by level.
     let point =
         |i: u32| DVec2::new(0.1 + f64::from(i) / 400.0, 0.5 + (f64::from(i) * 1.3).sin() / 500.0);
-    let wave = Feature {
+    let wave = TileFeature {
         layer: 0,
-        body: Body::Lines { points: (0..300).map(point).collect(), ends: vec![300] },
+        body: TileBody::Lines { points: (0..300).map(point).collect(), ends: vec![300] },
         fill: WindingRule::EvenOdd,
     };
     let options = Options { zooms: 0..=6, ..Options::default() };
@@ -153,7 +153,7 @@ fn buffers_reach_around_the_world() {
     let found = tiles(vec![square(0.0, 0.1, 0.001)], &options).unwrap();
     let names: Vec<String> = found.iter().map(|(tile, _)| tile.to_string()).collect();
     assert_eq!(names, ["1/0/0", "1/1/0"]);
-    let Shape::Areas(shapes) = &found[1].1[0].shape else { panic!("an area") };
+    let GridShape::Areas(shapes) = &found[1].1[0].shape else { panic!("an area") };
     assert_eq!(shapes.bounds_of_whole(), (4096, 4104));
 }
 
@@ -171,9 +171,11 @@ impl Whole for Shapes<I64Vec2> {
 
 #[test]
 fn what_cannot_be_tiled_is_named() {
-    let far = Feature { body: Body::Points(vec![DVec2::splat(1e300)]), ..square(0.0, 0.0, 1.0) };
-    let odd = Feature { body: Body::Points(vec![DVec2::NAN]), ..far.clone() };
-    let new = |feature: Feature, options: Options| Pyramid::new(vec![feature], options).map(drop);
+    let far =
+        TileFeature { body: TileBody::Points(vec![DVec2::splat(1e300)]), ..square(0.0, 0.0, 1.0) };
+    let odd = TileFeature { body: TileBody::Points(vec![DVec2::NAN]), ..far.clone() };
+    let new =
+        |feature: TileFeature, options: Options| Pyramid::new(vec![feature], options).map(drop);
     assert!(matches!(new(far, Options::default()), Err(Error::Parameter { name: "place", .. })));
     assert!(matches!(new(odd, Options::default()), Err(Error::NonFinite { .. })));
     let base = Options::default();

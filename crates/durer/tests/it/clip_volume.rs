@@ -1,6 +1,6 @@
 //! Homogeneous clipping: any w, both depth ranges, six borders or the near plane with a guard band.
 
-use durer::clip::outcode::{DepthRange, Outcode};
+use durer::clip::outcode::{ClipDepths, Outcode};
 use durer::clip::volume::*;
 use durer::math::{DMat4, DVec4};
 use durer::raster::interpolate::perspective_correct;
@@ -21,7 +21,7 @@ fn point() -> impl Strategy<Value = DVec4> {
 }
 
 fn options() -> impl Strategy<Value = Options> {
-    let depth = prop_oneof![Just(DepthRange::NegativeOneToOne), Just(DepthRange::ZeroToOne)];
+    let depth = prop_oneof![Just(ClipDepths::NegativeOneToOne), Just(ClipDepths::ZeroToOne)];
     let borders = prop_oneof![
         Just(Borders::All),
         Just(Borders::NearOnly { guard_band: 2.0 }),
@@ -37,7 +37,7 @@ fn lies_inside(p: DVec4, options: &Options) -> bool {
         Borders::NearOnly { guard_band } => (guard_band, false),
         Borders::Depths { guard_band } => (guard_band, true),
     };
-    let near = if options.depth == DepthRange::ZeroToOne { p.z >= 0.0 } else { p.z >= -p.w };
+    let near = if options.depth == ClipDepths::ZeroToOne { p.z >= 0.0 } else { p.z >= -p.w };
     p.x.abs() <= g * p.w && p.y.abs() <= g * p.w && near && (!far || p.z <= p.w)
 }
 
@@ -145,7 +145,7 @@ proptest! {
 
         // Any factor preserves a point's outcode and its position after the division.
         for (p, _, s) in ring {
-            for depth in [DepthRange::NegativeOneToOne, DepthRange::ZeroToOne] {
+            for depth in [ClipDepths::NegativeOneToOne, ClipDepths::ZeroToOne] {
                 let clear = boundary_coordinates(p, depth).iter().all(|d| d.abs() > 1e-12);
                 prop_assert!(!clear
                     || Outcode::of_homogeneous(p, depth) == Outcode::of_homogeneous(p * s, depth));
@@ -299,7 +299,7 @@ fn planes_of_the_source_space_are_the_borders() {
         [0.2, 0.0, -1.1, -1.0],
         [0.5, 0.0, -2.0, 3.0],
     ]);
-    for depth in [DepthRange::NegativeOneToOne, DepthRange::ZeroToOne] {
+    for depth in [ClipDepths::NegativeOneToOne, ClipDepths::ZeroToOne] {
         let planes = planes_in_source(&matrix, depth);
         for i in 0..125 {
             let p =

@@ -10,8 +10,8 @@ use durer::shade::PreparedLights;
 use durer::target::{Framebuffer, NO_ITEM};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::surface::Filter;
 use durer::visibility::surface::SurfaceInput;
+use durer::visibility::surface::TriangleFilter;
 use durer::visibility::surface::depth_sort::{ScreenPolygon, Step, order, order_after};
 use durer::visibility::surface::spanning_scan_line as spanning;
 
@@ -26,7 +26,7 @@ fn turned(scene: &Scene, degrees: f64) -> View {
 }
 
 fn input<'a>(scene: &'a Scene, view: &'a View) -> SurfaceInput<'a> {
-    let filter = Filter::new(Cull::None, 128);
+    let filter = TriangleFilter::new(Cull::None, 128);
     SurfaceInput::new(scene, view, filter).expect("input")
 }
 

@@ -1,8 +1,8 @@
 //! Commands: state, display lists, evaluators, and uses of stencils.
 
 use durer::commands::{
-    Command, CullFace, Curve, DisplayLists, MAX_NESTING, Patch, Pipeline, Primitive, Step, Vertex,
-    execute, execute_traced, replay,
+    BezierPatch, Command, CornerVertex, CullFace, DisplayLists, MAX_NESTING, Pipeline, Primitive,
+    SpaceCurve, Step, execute, execute_traced, replay,
 };
 use durer::curve::b_spline::BSpline;
 use durer::fragment::{
@@ -21,7 +21,7 @@ fn target() -> Framebuffer {
 }
 
 fn square(half: f64, z: f64) -> Command {
-    let corner = |x: f64, y: f64| Vertex::from(DVec3::new(x * half, y * half, z));
+    let corner = |x: f64, y: f64| CornerVertex::from(DVec3::new(x * half, y * half, z));
     let ring = vec![corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
     Command::Draw(Primitive::Polygon, ring)
 }
@@ -209,7 +209,7 @@ fn evaluators_draw_curves_and_patches() {
     let (r, w) = (0.9, std::f64::consts::FRAC_1_SQRT_2);
     let control = [(r, 0.0, 1.0), (r, r, w), (0.0, r, 1.0)];
     let control = control.map(|(x, y, w)| DVec4::new(x * w, y * w, 0.0, w)).to_vec();
-    let circle = Curve::Nurbs(BSpline::clamped(2, control).expect("spline"));
+    let circle = SpaceCurve::Nurbs(BSpline::clamped(2, control).expect("spline"));
     for i in 0..=20 {
         let p = circle.point(f64::from(i) / 20.0).expect("point");
         assert!((p.length() - r).abs() < 1e-12, "{p}");
@@ -223,14 +223,14 @@ fn evaluators_draw_curves_and_patches() {
         DVec3::new(0.0, -0.5, 0.0),
         DVec3::new(0.875, -0.5, 0.0),
     ];
-    let commands = [color(1., 0., 0.), Command::EvaluateCurve(Curve::Bezier(line), 7)];
+    let commands = [color(1., 0., 0.), Command::EvaluateCurve(SpaceCurve::Bezier(line), 7)];
     assert_eq!(count(&run(&commands, &DisplayLists::default()).0, RED), 36);
     let row = |y: f64| vec![DVec3::new(-0.5, y, 0.0), DVec3::new(0.5, y, 0.0)];
-    let patch = Patch { rows: vec![row(-0.5), row(0.0), row(0.5)] };
+    let patch = BezierPatch { rows: vec![row(-0.5), row(0.0), row(0.5)] };
     let commands = [color(1., 0., 0.), Command::EvaluatePatch(patch, [3, 5])];
     assert_eq!(count(&run(&commands, &DisplayLists::default()).0, RED), 400);
     for steps in [0, u32::MAX] {
-        let command = Command::EvaluateCurve(Curve::Bezier(Vec::new()), steps);
+        let command = Command::EvaluateCurve(SpaceCurve::Bezier(Vec::new()), steps);
         let failed = execute(
             &[command],
             &DisplayLists::default(),
@@ -307,7 +307,7 @@ proptest! {
     #[test]
     fn any_vertices_do_no_harm(points in prop::collection::vec([number(), number(), number()], 0..9), fov in 0.1..3.0f64) {
         let projection = projection(fov);
-        let vertices: Vec<Vertex> = points.into_iter().map(|p| DVec3::from(p).into()).collect();
+        let vertices: Vec<CornerVertex> = points.into_iter().map(|p| DVec3::from(p).into()).collect();
         let mut commands = vec![Command::LoadProjection(projection), Command::Fragments(FragmentState::default())];
         for primitive in [Primitive::Points, Primitive::Lines, Primitive::LineStrip, Primitive::Triangles, Primitive::Polygon] {
             commands.push(Command::Draw(primitive, vertices.clone()));
@@ -360,9 +360,9 @@ fn a_logic_operation_on_indices_undoes_itself() {
 /// extends over its own depth.
 #[test]
 fn indices_are_interpolated_in_perspective() {
-    let corner = |x: f64, z: f64, index| Vertex {
+    let corner = |x: f64, z: f64, index| CornerVertex {
         index: Some(index),
-        ..Vertex::from(DVec3::new(x, -0.5, z))
+        ..CornerVertex::from(DVec3::new(x, -0.5, z))
     };
     let (near, far) = (-1.0, -9.0);
     let floor = vec![
@@ -401,7 +401,10 @@ fn indices_are_interpolated_in_perspective() {
 
 #[test]
 fn indices_of_lines_and_points_are_theirs() {
-    let at = |x: f64, index| Vertex { index: Some(index), ..Vertex::from(DVec3::new(x, 0.0, 0.0)) };
+    let at = |x: f64, index| CornerVertex {
+        index: Some(index),
+        ..CornerVertex::from(DVec3::new(x, 0.0, 0.0))
+    };
     let target = indexed(&[
         Command::Draw(Primitive::Lines, vec![at(-1.0, 100.0), at(1.0, 139.0)]),
         Command::Index(9.0),

@@ -1,15 +1,16 @@
 //! Commands beyond geometry: lighting, textures, the pixel path, clipped lines, rows counted from below.
 
 use durer::commands::{
-    Bitmap, ColorMaterial, Command, CullFace, DisplayLists, Light, LightModel, LightStep, Lighting,
-    Material, MaterialFace, Patch, Pipeline, PixelBlock, PixelPlane, Primitive, ShadeModel,
-    Texture, TextureFunction, Vertex, execute, read_pixels,
+    BezierPatch, Bitmap, BoundTexture, ColorMaterial, Command, CornerVertex, CullFace,
+    DisplayLists, LightModel, LightSource, LightStep, LightingState, MaterialFace, Pipeline,
+    PixelBlock, PixelPlane, Primitive, Reflection, ShadeModel, TextureFunction, execute,
+    read_pixels,
 };
 use durer::fragment::{Compare, FragmentState, Scissor};
 use durer::math::{DMat4, DVec2, DVec3, DVec4, IVec2, Vec4};
 use durer::raster::line::{self, bresenham};
-use durer::scene::{Filter, Image, Sampler};
-use durer::target::{Framebuffer, Origin, Pixels};
+use durer::scene::{Image, Sampler, TextureFilter};
+use durer::target::{Framebuffer, Pixels, RowOrigin};
 use durer::trace::{NoTrace, Recorder};
 
 const SIDE: u32 = 16;
@@ -30,8 +31,8 @@ fn fails(commands: &[Command]) -> String {
     failed.expect_err("refused").to_string()
 }
 
-fn at(x: f64, y: f64) -> Vertex {
-    Vertex::from(DVec3::new(x, y, 0.0))
+fn at(x: f64, y: f64) -> CornerVertex {
+    CornerVertex::from(DVec3::new(x, y, 0.0))
 }
 
 fn square() -> Command {
@@ -49,9 +50,9 @@ fn close(found: DVec4, expected: [f64; 4]) {
 /// A point light at distance 2, 60 degrees from the normal, all terms of the formula.
 #[test]
 fn every_term_of_the_light_is_shown() {
-    let mut lighting = Lighting { enabled: true, ..Lighting::default() };
+    let mut lighting = LightingState { enabled: true, ..LightingState::default() };
     lighting.model = LightModel { ambient: grey(0.1), local_viewer: true, two_sided: false };
-    lighting.front = Material {
+    lighting.front = Reflection {
         ambient: grey(0.5),
         diffuse: Vec4::new(0.8, 0.4, 0.2, 0.75),
         specular: grey(0.5),
@@ -61,14 +62,14 @@ fn every_term_of_the_light_is_shown() {
     let vertex = DVec4::new(0.0, 0.0, -3.0, 1.0);
     // l = (√3/2, 0, ½), and the eye is straight ahead.
     let toward = DVec3::new(0.75_f64.sqrt(), 0.0, 0.5);
-    lighting.lights[3] = Some(Light {
+    lighting.lights[3] = Some(LightSource {
         ambient: grey(0.2),
         position: (vertex.truncate() + toward * 2.0).extend(1.0),
         attenuation: [1.0, 0.25, 0.125],
         spot_direction: -toward,
         spot_cutoff: 30.0,
         spot_exponent: 4.0,
-        ..Light::default()
+        ..LightSource::default()
     });
     let mut steps = Recorder::default();
     let lit = lighting.lit(true, vertex, DVec3::Z, Vec4::ONE, &mut steps);
@@ -95,10 +96,10 @@ fn every_term_of_the_light_is_shown() {
 
 #[test]
 fn a_light_that_a_face_turns_away_from_leaves_its_ambient_share() {
-    let mut lighting = Lighting { enabled: true, ..Lighting::default() };
+    let mut lighting = LightingState { enabled: true, ..LightingState::default() };
     lighting.model.ambient = grey(0.0);
     lighting.front.specular = grey(1.0);
-    lighting.lights[0] = Some(Light { ambient: grey(1.0), ..Light::default() });
+    lighting.lights[0] = Some(LightSource { ambient: grey(1.0), ..LightSource::default() });
     // Shininess 0 would add the whole highlight if f were not 0.
     let lit = lighting.lit(true, DVec4::W, DVec3::NEG_Z, Vec4::ONE, &mut NoTrace);
     close(lit, [0.2, 0.2, 0.2, 1.0]);
@@ -113,8 +114,8 @@ fn a_light_that_a_face_turns_away_from_leaves_its_ambient_share() {
 fn lamp(commands: &mut Vec<Command>) {
     commands.push(Command::Lighting(true));
     commands.push(Command::LightModel(LightModel { ambient: grey(0.0), ..LightModel::default() }));
-    commands.push(Command::Light(0, Some(Light::default())));
-    let material = Material { ambient: grey(0.0), diffuse: Vec4::ONE, ..Material::default() };
+    commands.push(Command::Light(0, Some(LightSource::default())));
+    let material = Reflection { ambient: grey(0.0), diffuse: Vec4::ONE, ..Reflection::default() };
     commands.push(Command::Material(MaterialFace::FrontAndBack, material));
 }
 
@@ -131,7 +132,7 @@ fn lights_move_with_the_matrix_and_normals_with_its_inverse() {
     let turn = DMat4::from_rotation_y(std::f64::consts::FRAC_PI_2);
     commands.extend([
         Command::LoadModelView(turn),
-        Command::Light(0, Some(Light::default())),
+        Command::Light(0, Some(LightSource::default())),
         Command::LoadModelView(DMat4::from_scale(DVec3::new(1.0, 1.0, 2.0))),
         Command::Normalize(true),
         Command::Normal(DVec3::new(1.0, 0.0, 1.0)),
@@ -147,7 +148,7 @@ fn lights_move_with_the_matrix_and_normals_with_its_inverse() {
 fn flat_shading_takes_the_last_vertex_and_two_sides_their_materials() {
     let mut commands = Vec::new();
     lamp(&mut commands);
-    let corner = |x, y, normal| Vertex { normal: Some(normal), ..at(x, y) };
+    let corner = |x, y, normal| CornerVertex { normal: Some(normal), ..at(x, y) };
     let ring = vec![
         corner(-1., -1., DVec3::NEG_Z),
         corner(3., -1., DVec3::NEG_Z),
@@ -161,14 +162,14 @@ fn flat_shading_takes_the_last_vertex_and_two_sides_their_materials() {
     commands.push(Command::Draw(Primitive::Triangles, ring.clone()));
     assert!(on(target(), &commands).color.data().iter().all(|c| *c == [255; 4]));
     // Seen from behind: corners in the other order, and a red back.
-    let red = Material {
+    let red = Reflection {
         ambient: grey(0.0),
         diffuse: Vec4::new(1.0, 0.0, 0.0, 1.0),
-        ..Material::default()
+        ..Reflection::default()
     };
     let model = LightModel { ambient: grey(0.0), two_sided: true, ..LightModel::default() };
-    let turned: Vec<Vertex> =
-        ring.iter().rev().map(|v| Vertex { normal: Some(DVec3::NEG_Z), ..*v }).collect();
+    let turned: Vec<CornerVertex> =
+        ring.iter().rev().map(|v| CornerVertex { normal: Some(DVec3::NEG_Z), ..*v }).collect();
     commands.extend([
         Command::LightModel(model),
         Command::Material(MaterialFace::Back, red),
@@ -180,13 +181,13 @@ fn flat_shading_takes_the_last_vertex_and_two_sides_their_materials() {
 #[test]
 fn patches_are_lit_by_the_normals_of_their_derivatives() {
     let row = |y: f64, z: f64| vec![DVec3::new(-1.0, y, z), DVec3::new(1.0, y, z)];
-    let flat = Patch { rows: vec![row(-1.0, 0.0), row(1.0, 0.0)] };
+    let flat = BezierPatch { rows: vec![row(-1.0, 0.0), row(1.0, 0.0)] };
     assert_eq!(flat.normal(0.3, 0.8), Some(DVec3::Z));
     // A slope of one half along y: the normal is (0, −½, 1) / |…|.
-    let slanted = Patch { rows: vec![row(-1.0, -0.5), row(1.0, 0.5)] };
+    let slanted = BezierPatch { rows: vec![row(-1.0, -0.5), row(1.0, 0.5)] };
     let expected = DVec3::new(0.0, -0.5, 1.0).normalize();
     assert!((slanted.normal(0.5, 0.5).expect("a normal") - expected).length() < 1e-12);
-    assert_eq!(Patch { rows: vec![vec![DVec3::ZERO; 2]; 2] }.normal(0.5, 0.5), None);
+    assert_eq!(BezierPatch { rows: vec![vec![DVec3::ZERO; 2]; 2] }.normal(0.5, 0.5), None);
     let mut commands = Vec::new();
     lamp(&mut commands);
     commands.push(Command::EvaluatePatch(slanted, [2, 2]));
@@ -196,12 +197,15 @@ fn patches_are_lit_by_the_normals_of_their_derivatives() {
 
 #[test]
 fn lights_and_materials_out_of_range_are_refused() {
-    let light = |light: Light| fails(&[Command::Light(0, Some(light))]);
-    assert!(light(Light { spot_cutoff: 100.0, ..Light::default() }).contains("180"));
-    assert!(light(Light { attenuation: [0.0; 3], ..Light::default() }).contains("not all zero"));
-    assert!(light(Light { spot_exponent: -1.0, ..Light::default() }).contains("128"));
+    let light = |light: LightSource| fails(&[Command::Light(0, Some(light))]);
+    assert!(light(LightSource { spot_cutoff: 100.0, ..LightSource::default() }).contains("180"));
+    assert!(
+        light(LightSource { attenuation: [0.0; 3], ..LightSource::default() })
+            .contains("not all zero")
+    );
+    assert!(light(LightSource { spot_exponent: -1.0, ..LightSource::default() }).contains("128"));
     assert!(fails(&[Command::Light(8, None)]).contains('8'));
-    let shiny = Material { shininess: f64::NAN, ..Material::default() };
+    let shiny = Reflection { shininess: f64::NAN, ..Reflection::default() };
     assert!(fails(&[Command::Material(MaterialFace::Front, shiny)]).contains("shininess"));
     assert!(fails(&[Command::PixelZoom(DVec2::new(f64::NAN, 1.0))]).contains("zoom"));
     assert!(fails(&[Command::CopyPixels([15, 0, 2, 1], PixelPlane::Color)]).contains("2x1+15+0"));
@@ -215,15 +219,21 @@ fn image() -> Image {
 }
 
 fn textured(function: TextureFunction) -> Framebuffer {
-    let texture = Texture::new(image());
-    let texture = Texture {
-        sampler: Sampler { mag: Filter::Nearest, min: Filter::Nearest, ..texture.sampler },
+    let texture = BoundTexture::new(image());
+    let texture = BoundTexture {
+        sampler: Sampler {
+            mag: TextureFilter::Nearest,
+            min: TextureFilter::Nearest,
+            ..texture.sampler
+        },
         function,
         color: Vec4::new(0.0, 0.0, 1.0, 1.0),
         ..texture
     };
-    let corner =
-        |x: f64, y: f64| Vertex { tex_coord: Some(DVec2::new((x + 1.0) / 2.0, 0.5)), ..at(x, y) };
+    let corner = |x: f64, y: f64| CornerVertex {
+        tex_coord: Some(DVec2::new((x + 1.0) / 2.0, 0.5)),
+        ..at(x, y)
+    };
     let ring = vec![corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
     let white = Command::Color(Vec4::new(1.0, 1.0, 1.0, 0.5));
     on(target(), &[white, Command::Texture(Some(texture)), Command::Draw(Primitive::Polygon, ring)])
@@ -341,7 +351,7 @@ fn lines_light_the_pixels_of_the_whole_line() {
         let ends = [0, 1].map(|_| IVec2::new(random(), random()));
         let corner = |p: IVec2| {
             let ndc = place(p.as_dvec2() + 0.5);
-            Vertex::from(ndc.extend(0.0))
+            CornerVertex::from(ndc.extend(0.0))
         };
         let commands = [
             Command::Viewport(Some(viewport)),
@@ -362,7 +372,7 @@ fn lines_light_the_pixels_of_the_whole_line() {
 /// Checks rows counted from below: as in OpenGL, rows of viewport, scissor and pixels start at the lowest.
 #[test]
 fn pictures_may_begin_with_the_lowest_row() {
-    let below = || Framebuffer { origin: Origin::BottomLeft, ..target() };
+    let below = || Framebuffer { origin: RowOrigin::BottomLeft, ..target() };
     let ring = vec![at(-1., -1.), at(0.5, -1.), at(-1., 0.25)];
     let commands = [
         Command::Cull(CullFace::Back),
@@ -374,11 +384,11 @@ fn pictures_may_begin_with_the_lowest_row() {
     assert_eq!(picture.color.get(0, 0), Some([255; 4]), "the corner is in the first row");
     assert_eq!(picture.color.get(15, 0), Some([255; 4]), "the point, too");
     // The same picture as with rows counted from above, except for which border of a face belongs to it.
-    let turned = picture.clone().with_origin(Origin::TopLeft);
+    let turned = picture.clone().with_origin(RowOrigin::TopLeft);
     let other = on(target(), &commands);
     let apart = turned.color.data().iter().zip(other.color.data()).filter(|(a, b)| a != b).count();
     assert!(apart <= 16, "{apart}");
-    assert_eq!(turned.with_origin(Origin::BottomLeft), picture);
+    assert_eq!(turned.with_origin(RowOrigin::BottomLeft), picture);
     let front = on(below(), &[Command::Cull(CullFace::Front), commands[1].clone()]);
     assert_eq!(front.color, target().color, "fronts are fronts in either order");
     let lower = on(

@@ -2,7 +2,7 @@
 
 use durer::clip::polygon::overlay::{Options, Output, overlay};
 use durer::clip::polygon::{BooleanOp, Shapes, WindingRule};
-use durer::clip::polyline::{self, Part};
+use durer::clip::polyline::{self, KeptPart};
 use durer::math::DVec2;
 use durer::trace::NoTrace;
 use serde_json::Value;
@@ -389,7 +389,7 @@ fn clipper2_lines_are_cut_at_the_border() {
         let whole: f64 =
             case.open.iter().flat_map(|l| l.windows(2)).map(|s| s[0].distance(s[1])).sum();
         let inside = length_inside(&case.open, &case.clip);
-        for (part, expected) in [(Part::Inside, inside), (Part::Outside, whole - inside)] {
+        for (part, expected) in [(KeptPart::Inside, inside), (KeptPart::Outside, whole - inside)] {
             let cut = polyline::clip(
                 &case.clip,
                 &points,

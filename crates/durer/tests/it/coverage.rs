@@ -161,7 +161,7 @@ fn valid_case(seed: u64, corners: usize) -> Option<Case> {
     (valid(&mask) && layer.shapes().iter().all(valid)).then_some(Case { layer, mask, size, ulp })
 }
 
-fn cut(shapes: &Shapes, mask: &Prepared, op: BooleanOp) -> coverage::Cut {
+fn cut(shapes: &Shapes, mask: &Prepared, op: BooleanOp) -> coverage::CoverageCut {
     coverage::cut(shapes, mask, op, &Default::default()).expect("finite")
 }
 
@@ -207,7 +207,8 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
     borders.extend(edges(&case.mask));
     let mut areas = [0.0; 2];
     for (k, op) in [BooleanOp::Intersection, BooleanOp::Difference].into_iter().enumerate() {
-        let cuts: Vec<coverage::Cut> = cells.iter().map(|cell| cut(cell, &mask, op)).collect();
+        let cuts: Vec<coverage::CoverageCut> =
+            cells.iter().map(|cell| cut(cell, &mask, op)).collect();
         let parts: Vec<Shapes> = cuts.iter().map(|cut| cut.shapes.clone()).collect();
         for (cut, cell) in cuts.iter().zip(&cells) {
             prop_assert!(is_valid(&cut.shapes, Touching::AtPoints), "{:?}", cut.shapes);
@@ -263,16 +264,16 @@ proptest! {
                 let options = polyline::Options { part };
                 polyline::clip_prepared(&mask, line, &[line.len()], &options, &mut NoTrace).unwrap()
             };
-            let lines = part(polyline::Part::Inside, &line);
+            let lines = part(polyline::KeptPart::Inside, &line);
             for point in inside.points() {
                 let corner = case.mask.points().contains(point);
                 prop_assert!(corner || lines.points.contains(point), "{point} {inside:?} {lines:?}");
             }
             for (_, piece) in lines.pieces() {
-                let again = part(polyline::Part::Inside, piece);
+                let again = part(polyline::KeptPart::Inside, piece);
                 prop_assert_eq!(&again.points[..], piece, "{:?} {:?}", line, case.mask);
                 // The remainder on the other side is on the border.
-                for point in part(polyline::Part::Outside, piece).points {
+                for point in part(polyline::KeptPart::Outside, piece).points {
                     prop_assert!(borders.iter().any(|&border| lies_on(point, border, case.ulp)));
                 }
             }

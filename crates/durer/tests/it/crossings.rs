@@ -2,7 +2,7 @@
 
 use crate::raster_coverage::Random;
 use durer::Error;
-use durer::clip::crossings::bentley_ottmann::{self, Place, Step, crossings};
+use durer::clip::crossings::bentley_ottmann::{self, Neighbours, Step, crossings};
 use durer::clip::crossings::{Crossing, Options, all_pairs};
 use durer::clip::line::Segment;
 use durer::math::DVec2;
@@ -168,9 +168,9 @@ fn neighbours_are_tested_and_the_status_changes_its_order() {
         .collect();
     let middle = Some(DVec2::splat(2.0));
     let expected = [
-        (Place::Below, [0, 1], middle, true),
-        (Place::Below, [1, 2], None, false),
-        (Place::Above, [0, 2], None, false),
+        (Neighbours::Below, [0, 1], middle, true),
+        (Neighbours::Below, [1, 2], None, false),
+        (Neighbours::Above, [0, 2], None, false),
     ];
     assert_eq!(tests, expected);
 }

@@ -3,7 +3,7 @@
 use durer::curve::fit::{Fitted, Options, Polyline, fit};
 use durer::curve::pieces;
 use durer::math::DVec2;
-use durer::target::{Arc, Curve, Piece};
+use durer::target::{Curve, CurvePiece, EllipticArc};
 use std::f64::consts::{PI, TAU};
 
 const TOLERANCE: f64 = 0.02;
@@ -28,11 +28,11 @@ fn unit(angle: f64) -> DVec2 {
 }
 
 fn letters(curve: &Curve) -> String {
-    let letter = |p: &Piece| match p {
-        Piece::Line(_) => 'L',
-        Piece::Arc(arc, _) if arc.is_circular() => 'A',
-        Piece::Arc(..) => 'E',
-        Piece::Cubic(..) => 'C',
+    let letter = |p: &CurvePiece| match p {
+        CurvePiece::Line(_) => 'L',
+        CurvePiece::Arc(arc, _) if arc.is_circular() => 'A',
+        CurvePiece::Arc(..) => 'E',
+        CurvePiece::Cubic(..) => 'C',
     };
     curve.pieces.iter().map(letter).collect()
 }
@@ -79,7 +79,7 @@ fn circles_seen_at_an_angle_are_ellipses() {
     assert!(ellipse.axis.normalize().perp_dot(turned).abs() < 1e-7);
     // Half of it is an arc of the same.
     let half = round(&points[..25], false);
-    let [Piece::Arc(arc, end)] = half.pieces[..] else { panic!("{half:?}") };
+    let [CurvePiece::Arc(arc, end)] = half.pieces[..] else { panic!("{half:?}") };
     assert!((arc.radii() - DVec2::new(10.0, 3.5)).abs().max_element() < 1e-6);
     assert_eq!((half.start, end), (points[0], points[24]));
 }
@@ -102,7 +102,7 @@ fn slots_and_rounded_corners_are_lines_and_arcs() {
         found.sort_desc();
         assert_eq!(found, "LLAA", "{chords}");
         for piece in &curve.pieces {
-            if let Piece::Arc(arc, _) = piece {
+            if let CurvePiece::Arc(arc, _) = piece {
                 assert!(
                     (arc.axis.length() - 4.0).abs() < 1e-9 && (arc.turn.abs() - PI).abs() < 1e-9
                 );
@@ -148,7 +148,7 @@ fn chords_that_something_ends_on_stay() {
     let is_met = |a: DVec2, _| a == points[5];
     let options = Options { tolerance: TOLERANCE, round: true };
     let curve = fit(polyline, is_met, options).expect("a curve").curve;
-    let line = curve.iter().find(|(_, p)| matches!(p, Piece::Line(_))).expect("a line");
+    let line = curve.iter().find(|(_, p)| matches!(p, CurvePiece::Line(_))).expect("a line");
     assert_eq!((line.0, line.1.end()), (points[5], points[6]));
     assert_eq!(curve.pieces.len(), 2);
 }
@@ -182,7 +182,7 @@ fn ends_between_two_points_of_a_circle_stay() {
     let last = points.len() - 1;
     points[last] = points[last - 1].lerp(points[last], 0.5);
     let curve = round(&points, false);
-    let [Piece::Arc(arc, end)] = curve.pieces[..] else { panic!("{curve:?}") };
+    let [CurvePiece::Arc(arc, end)] = curve.pieces[..] else { panic!("{curve:?}") };
     assert_eq!(end, points[last]);
     assert!(arc.at(arc.start + arc.turn).distance(end) < TOLERANCE * 0.021);
     assert!((arc.axis.length() - 12.0).abs() < TOLERANCE);
@@ -230,9 +230,9 @@ fn fitted_curves_stay_near_to_any_polyline() {
         assert_eq!(curve.closed, closed && points.len() > 2);
         if !closed {
             assert_eq!((curve.start, Some(&points[0])), (points[0], points.first()), "{case}");
-            assert_eq!(curve.pieces.last().map(Piece::end), points.last().copied(), "{case}");
+            assert_eq!(curve.pieces.last().map(CurvePiece::end), points.last().copied(), "{case}");
         } else if points.len() > 2 {
-            assert_eq!(curve.pieces.last().map(Piece::end), Some(curve.start), "{case}");
+            assert_eq!(curve.pieces.last().map(CurvePiece::end), Some(curve.start), "{case}");
         }
         // Curves begin at points, in order.
         for (start, from) in curve.iter().map(|p| p.0).zip(&strict.from) {
@@ -273,7 +273,7 @@ fn points_in_a_row_are_one_line() {
     let mut points: Vec<DVec2> = (0..8).map(|i| DVec2::new(f64::from(i * i), 0.0)).collect();
     points.extend((1..6).map(|i| DVec2::new(49.0, f64::from(i))));
     let curve = round(&points, false);
-    assert_eq!(curve.pieces, [Piece::Line(points[7]), Piece::Line(points[12])]);
+    assert_eq!(curve.pieces, [CurvePiece::Line(points[7]), CurvePiece::Line(points[12])]);
     let mut kept = vec![false; 13];
     kept[3] = true;
     assert_eq!(letters(&fitted(&points, false, &kept, true).curve), "LLL");
@@ -315,7 +315,7 @@ fn broken_polylines_give_nothing_and_do_no_harm() {
 
 #[test]
 fn cubic_curves_and_pairs_of_arcs_are_near_to_ellipses() {
-    let arc = Arc {
+    let arc = EllipticArc {
         center: DVec2::new(3.0, 4.0),
         axis: DVec2::new(60.0, 25.0),
         ratio: 0.4,
@@ -323,13 +323,13 @@ fn cubic_curves_and_pairs_of_arcs_are_near_to_ellipses() {
         turn: -5.1,
     };
     let (start, end) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
-    let curve = Curve { start, pieces: vec![Piece::Arc(arc, end)], closed: false };
+    let curve = Curve { start, pieces: vec![CurvePiece::Arc(arc, end)], closed: false };
     let fine: Vec<DVec2> =
         (0..=20_000).map(|i| arc.at(0.7 - 5.1 * f64::from(i) / 20_000.0)).collect();
     let cubics = Curve {
         pieces: pieces::cubics(&arc, end, 1e-4)
             .iter()
-            .map(|[a, b, c]| Piece::Cubic(*a, *b, *c))
+            .map(|[a, b, c]| CurvePiece::Cubic(*a, *b, *c))
             .collect(),
         ..curve.clone()
     };

@@ -6,7 +6,7 @@ use durer::scene::{Camera, HeightField, Projection};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
 use durer::visibility::line::floating_horizon::{
-    Curve, Family, Options, Piece, Step, curves, draw,
+    GridChain, LineFamily, LinePiece, Options, Step, curves, draw,
 };
 use proptest::prelude::*;
 
@@ -94,7 +94,7 @@ fn hidden_by(
 }
 
 /// Compares all lines with rays; returns the numbers of samples and of disagreements.
-fn disagreements(field: &HeightField, camera: &Camera) -> (usize, Vec<(Curve, DVec3)>) {
+fn disagreements(field: &HeightField, camera: &Camera) -> (usize, Vec<(GridChain, DVec3)>) {
     let triangles = triangles(field);
     let (mut samples, mut wrong) = (0, Vec::new());
     for curve in curves(field, camera, &ALL, &mut NoTrace).expect("curves") {
@@ -166,7 +166,7 @@ fn eyes_above_below_and_within_the_surface_see_what_rays_see() {
         assert!(samples > 1000);
         assert!(wrong.is_empty(), "{eye}: {} of {samples}: {:?}", wrong.len(), wrong[0]);
         // Nothing is lost: the pieces make up all lines.
-        let length = |c: &Curve| c.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+        let length = |c: &GridChain| c.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
         let found: f64 =
             curves(&field, &camera, &ALL, &mut NoTrace).expect("curves").iter().map(length).sum();
         assert!((found - whole_length(&field)).abs() < 1e-6, "{eye}: {found}");
@@ -255,8 +255,9 @@ fn fewer_lines_are_parts_of_all_lines() {
     let all = curves(&field, &camera, &Options::default(), &mut NoTrace).expect("curves");
     let some = Options { every_row: 4, every_column: 0, hidden: false };
     let some = curves(&field, &camera, &some, &mut NoTrace).expect("curves");
-    let chosen =
-        |c: &&Curve| c.family == Family::AlongX && (c.line.is_multiple_of(4) || c.line == 14);
+    let chosen = |c: &&GridChain| {
+        c.family == LineFamily::AlongX && (c.line.is_multiple_of(4) || c.line == 14)
+    };
     assert!(!some.is_empty() && some.iter().eq(all.iter().filter(chosen)));
 }
 
@@ -282,7 +283,7 @@ fn steps_rebuild_the_lines_and_change_nothing() {
     let mut recorder = Recorder::default();
     let traced = curves(&field, &camera, &ALL, &mut recorder).expect("curves");
     assert_eq!(traced, curves(&field, &camera, &ALL, &mut NoTrace).expect("curves"));
-    let mut pieces: Vec<Piece> = Vec::new();
+    let mut pieces: Vec<LinePiece> = Vec::new();
     let mut covered = 0;
     for step in recorder.steps() {
         match step {
@@ -291,11 +292,11 @@ fn steps_rebuild_the_lines_and_change_nothing() {
         }
     }
     assert_eq!(covered, triangles(&field).len());
-    let key = |p: &Piece| (p.family, p.line, p.segment);
+    let key = |p: &LinePiece| (p.family, p.line, p.segment);
     pieces.sort_by(|a, b| key(a).cmp(&key(b)).then(a.range[0].total_cmp(&b.range[0])));
-    let rebuilt: Vec<(Family, usize, bool)> =
+    let rebuilt: Vec<(LineFamily, usize, bool)> =
         pieces.iter().map(|p| (p.family, p.line, p.visible)).collect();
-    let reported: Vec<(Family, usize, bool)> = traced
+    let reported: Vec<(LineFamily, usize, bool)> = traced
         .iter()
         .flat_map(|c| std::iter::repeat_n((c.family, c.line, c.visible), c.points.len() - 1))
         .collect();
@@ -382,7 +383,7 @@ fn levels_cut_the_surface_between_its_points() {
     let found = curves(&field, &camera(10.0, 50.0, false), &ALL, &mut NoTrace).expect("curves");
     for curve in &found {
         let [first, last] = [curve.points[0], curve.points[curve.points.len() - 1]];
-        if curve.family == Family::AlongX {
+        if curve.family == LineFamily::AlongX {
             assert!((first.x - 2.5).abs() < 1e-9 && (last.x - 6.5).abs() < 1e-9, "{curve:?}");
             assert!((first.y + 0.75).abs() < 1e-9 && (last.y - 1.25).abs() < 1e-9, "{curve:?}");
         } else {
@@ -414,7 +415,7 @@ fn nothing_hangs_from_the_borders_of_holes() {
     };
     let field = HeightField::from_fn([4, 4], [0.0, 3.0], [0.0, 3.0], f).expect("field");
     let found = curves(&field, &camera(20.0, 60.0, false), &ALL, &mut NoTrace).expect("curves");
-    let ends = |c: &Curve| [c.points[0], c.points[c.points.len() - 1]].map(|p| (p.x, p.z));
+    let ends = |c: &GridChain| [c.points[0], c.points[c.points.len() - 1]].map(|p| (p.x, p.z));
     assert!(!found.iter().any(|c| ends(c).contains(&(1.0, 1.0)) && ends(c).contains(&(2.0, 1.0))));
     assert!(found.iter().any(|c| ends(c) == [(1.0, 3.0), (2.0, 3.0)]), "{found:?}");
     assert!(found.iter().flat_map(ends).filter(|p| *p == (1.0, 1.0)).count() >= 2);

@@ -8,7 +8,7 @@ use durer::pipeline::{
 use durer::scene::{Camera, Mesh, Projection, Scene, Topology};
 use durer::target::drawing::LineClass;
 use durer::view::View;
-use durer::view::pick::{Area, Hit, pick};
+use durer::view::pick::{Hit, PickArea, pick};
 
 fn camera() -> Camera {
     Camera {
@@ -111,7 +111,7 @@ fn drawings_of_marks_alone_are_cut_at_the_window() {
 fn marks_are_picked_near_a_point_and_within_a_rectangle() {
     let scene = hidden_in_part();
     let view = View::new(camera(), 400, 400).expect("view");
-    let at = |x: f64, y: f64| pick(&scene, &view, Area::Point(DVec2::new(x, y)));
+    let at = |x: f64, y: f64| pick(&scene, &view, PickArea::Point(DVec2::new(x, y)));
     let kinds = |hits: &[Hit]| -> Vec<_> { hits.iter().map(|h| (h.topology, h.item)).collect() };
     // Items count triangles first, then the rest in scene order.
     assert_eq!(kinds(&at(120.0, 202.5)), [(Topology::Lines, 4)]);
@@ -121,7 +121,7 @@ fn marks_are_picked_near_a_point_and_within_a_rectangle() {
     assert_eq!(both.iter().map(|h| h.topology).collect::<Vec<_>>()[..1], [Topology::Triangles]);
     assert!((both[both.len() - 1].position - DVec3::new(0.01, 0.0, 0.0)).length() < 1e-9);
     let rect = Rect::new(DVec2::new(0.0, 0.0), DVec2::new(110.0, 210.0)).expect("rectangle");
-    let in_rect = pick(&scene, &view, Area::Rect(rect));
+    let in_rect = pick(&scene, &view, PickArea::Rect(rect));
     assert_eq!(kinds(&in_rect), [(Topology::Points, 3), (Topology::Lines, 4)]);
 }
 
@@ -134,7 +134,7 @@ fn a_slanted_line_is_picked_where_it_is_in_the_world() {
     for t in [0.1, 0.5, 0.9] {
         let p = DVec3::new(-1.0 + 2.0 * t, 0.0, -8.0 * t);
         let s = view.screen_from_world() * p.extend(1.0);
-        let on_line = Area::Point(DVec2::new(s.x, s.y) / s.w);
+        let on_line = PickArea::Point(DVec2::new(s.x, s.y) / s.w);
         let hits = pick(&scene(vec![line.clone()]), &view, on_line);
         assert_eq!(hits.len(), 1, "{t}");
         assert!((hits[0].position - p).length() < 1e-9, "{t}: {}", hits[0].position);

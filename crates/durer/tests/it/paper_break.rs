@@ -3,7 +3,7 @@
 use durer::math::{DVec2, DVec3};
 use durer::paper::{Break, Breaks, ViewBreaks};
 use durer::scene::{Aabb, Camera, Projection};
-use durer::target::drawing::{Drawing, Label, Line, LineClass, Region, RegionKind};
+use durer::target::drawing::{Drawing, Line, LineClass, Region, RegionKind, TextLabel};
 
 fn camera(to_eye: DVec3, up: DVec3) -> Camera {
     let projection = Projection::Orthographic { height: 100.0 };
@@ -28,7 +28,7 @@ fn bar() -> Drawing {
     let p = DVec2::new;
     let ring = vec![p(0.0, -10.0), p(300.0, -10.0), p(300.0, 10.0), p(0.0, 10.0)];
     let line = |points, closed| Line { class: LineClass::Crease, invisibility: 0, points, closed };
-    let label = |x: f64| Label {
+    let label = |x: f64| TextLabel {
         at: p(x, 0.0),
         text: format!("{x}"),
         height: 3.0,

@@ -3,8 +3,8 @@
 use durer::math::DVec2;
 use durer::paper::{Hidden, Options, lay_out};
 use durer::target::drawing::{Drawing, Line, LineClass, Region, RegionKind};
-use durer::target::sheet::{Mark, Sheet};
-use durer::target::{Arc, Curve, Piece};
+use durer::target::sheet::{PaperMark, Sheet};
+use durer::target::{Curve, CurvePiece, EllipticArc};
 use std::f64::consts::TAU;
 
 fn circle(count: u32, radius: f64) -> Vec<DVec2> {
@@ -30,15 +30,15 @@ fn curves(sheet: &Sheet) -> Vec<&Curve> {
     let marks = sheet.layers.iter().flat_map(|l| &l.marks);
     marks
         .filter_map(|mark| match mark {
-            Mark::Curve { curve, .. } => Some(curve),
+            PaperMark::Curve { curve, .. } => Some(curve),
             _ => None,
         })
         .collect()
 }
 
-fn arcs<'a>(curves: &[&'a Curve]) -> Vec<&'a Arc> {
-    let arc = |piece: &'a Piece| match piece {
-        Piece::Arc(arc, _) => Some(arc),
+fn arcs<'a>(curves: &[&'a Curve]) -> Vec<&'a EllipticArc> {
+    let arc = |piece: &'a CurvePiece| match piece {
+        CurvePiece::Arc(arc, _) => Some(arc),
         _ => None,
     };
     curves.iter().flat_map(|c| &c.pieces).filter_map(arc).collect()
@@ -48,9 +48,9 @@ fn arcs<'a>(curves: &[&'a Curve]) -> Vec<&'a Arc> {
 fn paper_has_polylines_where_nothing_is_fitted() {
     let lines = vec![line(&circle(48, 20.0), true, 0, LineClass::Crease)];
     let polylines = sheet(lines.clone(), 0.0);
-    assert!(matches!(polylines.layers[0].marks[..], [Mark::Stroke { closed: true, .. }]));
+    assert!(matches!(polylines.layers[0].marks[..], [PaperMark::Stroke { closed: true, .. }]));
     let fitted = sheet(lines, 0.02);
-    assert!(curves(&fitted)[0].whole().is_some_and(Arc::is_circular));
+    assert!(curves(&fitted)[0].whole().is_some_and(EllipticArc::is_circular));
     let straight = vec![line(&circle(4, 20.0), true, 0, LineClass::Crease)];
     assert_eq!(sheet(straight.clone(), 0.02), sheet(straight, 0.0));
     // The mesh's own lines are faceted.
@@ -80,10 +80,10 @@ fn parts_of_a_circle_have_one_centre_and_meet() {
     }
     let mut ends: Vec<DVec2> = curves
         .iter()
-        .flat_map(|c| std::iter::once(c.start).chain(c.pieces.iter().map(Piece::end)))
+        .flat_map(|c| std::iter::once(c.start).chain(c.pieces.iter().map(CurvePiece::end)))
         .collect();
     let places = polylines.layers.iter().flat_map(|l| &l.marks).filter_map(|m| match m {
-        Mark::Stroke { points, .. } => Some(points),
+        PaperMark::Stroke { points, .. } => Some(points),
         _ => None,
     });
     let places: Vec<DVec2> = places.flatten().copied().collect();
@@ -109,7 +109,7 @@ fn region(rings: Vec<Vec<DVec2>>) -> Region {
     Region { kind: RegionKind::Surface, rings, color: [9, 9, 9, 255], item: None, part: None }
 }
 
-fn areas(regions: Vec<Region>, fit_areas: bool) -> Vec<Mark> {
+fn areas(regions: Vec<Region>, fit_areas: bool) -> Vec<PaperMark> {
     let drawing = Drawing { regions, ..Drawing::default() };
     let scale = "1:1".parse().expect("a scale");
     let options = Options { fit: 0.02, fit_areas, scale, ..Options::default() };
@@ -134,7 +134,7 @@ fn areas_share_the_curves_between_them() {
     let rings: Vec<&Curve> = marks
         .iter()
         .flat_map(|mark| match mark {
-            Mark::Area { rings, .. } => rings,
+            PaperMark::Area { rings, .. } => rings,
             other => panic!("{other:?}"),
         })
         .collect();
@@ -142,9 +142,9 @@ fn areas_share_the_curves_between_them() {
     assert!(rings.iter().all(|r| r.closed && r.start == r.end()));
     assert_eq!(rings[0].pieces.len(), 4);
     // Two halves, each in two rings, once reversed.
-    let arcs_of = |ring: &Curve| -> Vec<(DVec2, Arc, DVec2)> {
-        let arc = |(start, piece): (DVec2, &Piece)| match piece {
-            Piece::Arc(arc, end) => Some((start, *arc, *end)),
+    let arcs_of = |ring: &Curve| -> Vec<(DVec2, EllipticArc, DVec2)> {
+        let arc = |(start, piece): (DVec2, &CurvePiece)| match piece {
+            CurvePiece::Arc(arc, end) => Some((start, *arc, *end)),
             _ => None,
         };
         ring.iter().filter_map(arc).collect()
@@ -154,9 +154,11 @@ fn areas_share_the_curves_between_them() {
     for half in [arcs_of(rings[2]), arcs_of(rings[3])] {
         let [(start, arc, end)] = half[..] else { panic!("{half:?}") };
         assert!((arc.axis.length() - 20.0).abs() < 1e-9 && arc.is_circular());
-        let back = Arc { start: arc.start + arc.turn, turn: -arc.turn, ..arc };
-        let shared = |a: &(DVec2, Arc, DVec2)| a.0 == end && a.2 == start && a.1 == back;
-        let same = |a: &(DVec2, Arc, DVec2)| a.0 == end && a.2 == start && a.1.center == arc.center;
+        let back = EllipticArc { start: arc.start + arc.turn, turn: -arc.turn, ..arc };
+        let shared = |a: &(DVec2, EllipticArc, DVec2)| a.0 == end && a.2 == start && a.1 == back;
+        let same = |a: &(DVec2, EllipticArc, DVec2)| {
+            a.0 == end && a.2 == start && a.1.center == arc.center
+        };
         assert!(around.iter().any(|a| shared(a) || same(a)), "{around:?} {start} {arc:?}");
     }
 }
@@ -167,7 +169,7 @@ fn a_hole_and_what_fills_it_are_one_circle() {
     let plate: Vec<DVec2> = circle(4, 20.0);
     let disc: Vec<DVec2> = hole[13..].iter().chain(&hole[..13]).copied().collect();
     let marks = areas(vec![region(vec![plate, backwards(&hole)]), region(vec![disc])], true);
-    let [Mark::Area { rings: a, .. }, Mark::Area { rings: b, .. }] = &marks[..] else {
+    let [PaperMark::Area { rings: a, .. }, PaperMark::Area { rings: b, .. }] = &marks[..] else {
         panic!("{marks:?}")
     };
     let (hole, disc) = (a[1].whole().expect("a circle"), b[0].whole().expect("a circle"));
@@ -178,10 +180,10 @@ fn a_hole_and_what_fills_it_are_one_circle() {
 #[test]
 fn areas_that_reach_under_others_stay_as_they_are() {
     let disc = || vec![region(vec![circle(48, 20.0)])];
-    assert!(matches!(areas(disc(), false)[..], [Mark::Fill { .. }]));
+    assert!(matches!(areas(disc(), false)[..], [PaperMark::Fill { .. }]));
     // The same for lines without anything round.
     let square = vec![region(vec![circle(4, 20.0)])];
-    assert!(matches!(areas(square, true)[..], [Mark::Fill { .. }]));
+    assert!(matches!(areas(square, true)[..], [PaperMark::Fill { .. }]));
 }
 
 #[test]
@@ -197,7 +199,7 @@ fn a_rim_is_round_whatever_lies_beyond() {
     let rings: Vec<&Curve> = marks
         .iter()
         .map(|mark| match mark {
-            Mark::Area { rings, .. } => &rings[0],
+            PaperMark::Area { rings, .. } => &rings[0],
             other => panic!("{other:?}"),
         })
         .collect();
@@ -212,7 +214,7 @@ fn a_rim_is_round_whatever_lies_beyond() {
             false => (second, first),
         };
         assert!((high.axis.length() - 25.0).abs() < 1e-9 && high.turn < 0.0 && low.turn > 0.0);
-        let same = |a: &&Arc| a.center == low.center && a.turn == -low.turn;
+        let same = |a: &&EllipticArc| a.center == low.center && a.turn == -low.turn;
         assert!(circles.iter().any(same), "{low:?}");
     }
 }

@@ -6,7 +6,7 @@ use durer::target::NO_ITEM;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::polygons::Screen;
 use durer::visibility::polygons::patch_subdivision::{
-    Options, Patch, Picture, Step, render, replay,
+    BicubicPatch, Options, PatchPicture, Step, render, replay,
 };
 use durer::work::Work;
 
@@ -17,18 +17,18 @@ fn screen() -> Screen {
     Screen { width: WIDTH, height: HEIGHT, ..Screen::default() }
 }
 
-fn patch(mut point: impl FnMut(usize, usize) -> DVec3) -> Patch {
+fn patch(mut point: impl FnMut(usize, usize) -> DVec3) -> BicubicPatch {
     let mut rows = [[DVec3::ZERO; 4]; 4];
     for (j, row) in rows.iter_mut().enumerate() {
         for (i, place) in row.iter_mut().enumerate() {
             *place = point(i, j);
         }
     }
-    Patch::new(rows).unwrap()
+    BicubicPatch::new(rows).unwrap()
 }
 
 /// Returns a patch in any position; parts of it hide others, and parts are outside the screen.
-fn wild(random: &mut Random) -> Patch {
+fn wild(random: &mut Random) -> BicubicPatch {
     let mut number = |low: f64, high: f64| low + random.next() * (high - low);
     let (dx, dy) = (number(2.0, 7.0), number(2.0, 6.0));
     let (x, y) = (number(-3.0, 6.0), number(-3.0, 5.0));
@@ -38,7 +38,7 @@ fn wild(random: &mut Random) -> Patch {
     })
 }
 
-fn rendered(patches: &[Patch], options: &Options) -> Picture {
+fn rendered(patches: &[BicubicPatch], options: &Options) -> PatchPicture {
     let mut steps = Recorder::default();
     let found = render(patches, &screen(), options, &mut steps).unwrap();
     assert_eq!(render(patches, &screen(), options, &mut NoTrace).unwrap(), found);
@@ -47,7 +47,7 @@ fn rendered(patches: &[Patch], options: &Options) -> Picture {
 }
 
 /// Returns the nearest patch and depth at each pixel, at an offset from its centre, of a fine mesh.
-fn of_mesh(patches: &[Patch], steps: usize, offset: [f64; 2]) -> Vec<(u32, f64)> {
+fn of_mesh(patches: &[BicubicPatch], steps: usize, offset: [f64; 2]) -> Vec<(u32, f64)> {
     let mut found = vec![(NO_ITEM, f64::INFINITY); (WIDTH * HEIGHT) as usize];
     for (number, patch) in (0..).zip(patches) {
         let at = |k: usize| k as f64 / steps as f64;
@@ -96,7 +96,7 @@ fn pictures_are_those_of_fine_meshes() {
     let mut random = Random(31);
     let mut checked = 0;
     for round in 0..6 {
-        let patches: Vec<Patch> = (0..1 + round / 2).map(|_| wild(&mut random)).collect();
+        let patches: Vec<BicubicPatch> = (0..1 + round / 2).map(|_| wild(&mut random)).collect();
         let found = rendered(&patches, &Options::default());
         let mesh = of_mesh(&patches, 60, [0.0; 2]);
         // Where all neighbours agree, no outline passes, and the surface is not too steep to compare.
@@ -189,9 +189,9 @@ fn limits_and_budgets_are_kept() {
     assert!(reported(&small, Options::default()).contains("memory"));
     let mut rows = *patches[0].rows();
     rows[1][2].z = f64::NAN;
-    assert!(Patch::new(rows).is_err());
+    assert!(BicubicPatch::new(rows).is_err());
     rows[1][2].z = 1e200;
-    assert!(Patch::new(rows).is_err());
+    assert!(BicubicPatch::new(rows).is_err());
     // At the largest sizes: a result or a limit, and quickly.
     let huge = patch(|i, j| DVec3::new(i as f64 - 1.5, j as f64 - 1.5, 1.0) * 6e99);
     assert!(render(&[huge], &screen(), &Options::default(), &mut NoTrace).is_err());

@@ -3,8 +3,8 @@
 use crate::scenes::{self, Numbers};
 use durer::math::{DVec3, Vec3, Vec4};
 use durer::pipeline::{
-    Cull, Exposure, Lighting, RenderOptions, Samples, Seen, Shading, Shadows, Status,
-    SurfaceMethod, Unseen, check_pieces, render, render_seen, status, status_of_pieces, survey,
+    Cull, Exposure, Lighting, RenderOptions, Samples, Shading, Shadows, Status, SurfaceMethod,
+    SurveyResult, Unseen, check_pieces, render, render_seen, status, status_of_pieces, survey,
 };
 use durer::scene::{
     AlphaMode, Light, LightKind, Material, Mesh, Part, Projection, Scene, Topology, UpAxis,
@@ -65,7 +65,7 @@ fn in_pieces(scene: &Scene, at_once: usize) -> Vec<Scene> {
     (0..count).step_by(at_once).map(piece).collect()
 }
 
-fn surveyed(pieces: &[Scene], options: &RenderOptions) -> Seen {
+fn surveyed(pieces: &[Scene], options: &RenderOptions) -> SurveyResult {
     let mut survey = survey(options).expect("survey");
     pieces.iter().for_each(|piece| survey.add(piece).expect("piece"));
     survey.finish().expect("seen")

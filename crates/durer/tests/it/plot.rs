@@ -3,8 +3,8 @@
 use durer::math::{DVec2, Rect};
 use durer::plot::{ColorMap, Options, Plot, surface};
 use durer::scene::HeightField;
-use durer::target::drawing::Anchor;
-use durer::target::sheet::Mark;
+use durer::target::drawing::TextAnchor;
+use durer::target::sheet::PaperMark;
 use durer::view::projection::ViewDirection;
 
 fn plot(x: [f64; 2], z: [f64; 2], f: impl Fn(f64, f64) -> f64, options: &Options) -> Plot {
@@ -15,13 +15,13 @@ fn plot(x: [f64; 2], z: [f64; 2], f: impl Fn(f64, f64) -> f64, options: &Options
 /// Returns all texts with their boxes on the page, assuming letters 0.6 as wide as high.
 fn texts(plot: &Plot) -> Vec<(String, Rect)> {
     let marks = plot.clone().into_sheet().layers.into_iter().flat_map(|layer| layer.marks);
-    let boxed = |mark: Mark| {
-        let Mark::Text { at, text, height, anchor, .. } = mark else { return None };
+    let boxed = |mark: PaperMark| {
+        let PaperMark::Text { at, text, height, anchor, .. } = mark else { return None };
         let width = text.chars().count() as f64 * height * 0.6;
         let left = match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => width * 0.5,
-            Anchor::End => width,
+            TextAnchor::Start => 0.0,
+            TextAnchor::Middle => width * 0.5,
+            TextAnchor::End => width,
         };
         let low = at - DVec2::new(left, height);
         Some((text, Rect::new(low, low + DVec2::new(width, height)).ok()?))

@@ -6,7 +6,7 @@ use durer::target::{NO_ITEM, Pixels};
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::polygons::bsp::{self, Tree};
-use durer::visibility::polygons::regions::{self, Region, regions};
+use durer::visibility::polygons::regions::{self, FaceRegion, regions};
 use durer::visibility::polygons::{
     Face, PolygonMethod, Screen, csg, depth_sort, hierarchical_z, octree, painter, warnock,
     watkins, z_buffer,
@@ -157,7 +157,7 @@ fn the_steps_rebuild_the_pictures() {
     let mut steps = Recorder::default();
     let mut found = regions(&faces, &Default::default(), &Work::default(), &mut steps).unwrap();
     let mut replayed = regions::replay(steps.steps());
-    let by = |a: &Region, b: &Region| a.face.cmp(&b.face);
+    let by = |a: &FaceRegion, b: &FaceRegion| a.face.cmp(&b.face);
     found.sort_by(by);
     replayed.sort_by(by);
     assert_eq!(replayed, found);
@@ -473,7 +473,7 @@ fn regions_show_the_nearest_face_everywhere() {
 /// Checks that whole cells behind a wall are skipped, and that the numbers of the pyramid are the depths.
 #[test]
 fn a_pyramid_of_depths_hides_cells() {
-    use hierarchical_z::{Options, Step, Test};
+    use hierarchical_z::{Options, PyramidTest, Step};
     let square = |x: f64, y: f64, side: f64, z: f64| {
         let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
         Face::new(&corners.map(|(u, v)| DVec3::new(x + u, y + v, z))).unwrap()
@@ -500,7 +500,7 @@ fn a_pyramid_of_depths_hides_cells() {
     hierarchical_z::items(&faces, &small, &flat, &mut steps).unwrap();
     let face = |face, nearest, level, farthest| Step::Face {
         face,
-        test: Test { nearest, level, entry: [0, 0], farthest },
+        test: PyramidTest { nearest, level, entry: [0, 0], farthest },
     };
     let store = |pixel, face, depth| Step::Store { pixel, face, depth };
     let expected = [

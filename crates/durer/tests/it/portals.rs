@@ -5,7 +5,7 @@ use durer::math::{DVec2, DVec3};
 use durer::target::NO_ITEM;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::polygons::portals::{
-    Cell, Eye, Options, Plan, Portal, Step, Wall, items, replay, visits, walls,
+    ConvexRoom, Options, Plan, PlanEye, Portal, Step, Wall, items, replay, visits, walls,
 };
 use durer::visibility::polygons::{Face, PolygonMethod, Screen};
 use durer::work::Work;
@@ -55,7 +55,7 @@ fn rooms_through_doors_look_as_when_every_wall_is_drawn() {
         let [weight, mix] = random.point(0.05, 0.95).to_array();
         let ring = &rooms[cell];
         let place = ring[0].lerp(ring[1], weight).lerp(ring[3].lerp(ring[2], weight), mix);
-        let eye = Eye { at: DVec3::new(place.x, 0.0, place.y), cell, focal: 24.0 };
+        let eye = PlanEye { at: DVec3::new(place.x, 0.0, place.y), cell, focal: 24.0 };
         let screen = screen();
         let mut steps = Recorder::default();
         let found = items(&plan, &eye, &screen, &Options::default(), &mut steps).unwrap();
@@ -87,7 +87,7 @@ fn windows_shrink_from_door_to_door() {
     let door = |a: f64, b: f64, z: f64| [DVec2::new(a, z), DVec2::new(b, z)];
     let doors = [door(2.0, 4.0, 4.0), door(2.5, 6.0, 8.0), door(6.0, 7.0, 12.0)];
     let plan = Plan::of_rooms(&[0.0, 4.0, 8.0, 12.0].map(room), &doors, 2.0).unwrap();
-    let eye = Eye { at: DVec3::new(3.0, 0.0, 2.0), cell: 0, focal: 24.0 };
+    let eye = PlanEye { at: DVec3::new(3.0, 0.0, 2.0), cell: 0, focal: 24.0 };
     let mut steps = Recorder::default();
     let seen = visits(&plan, &eye, &screen(), &Options::default(), &mut steps).unwrap();
     // x / z · 24 + 24: from −½ to ½, then from −1/12 to ½, then from 3/10, all cut at ½.
@@ -99,11 +99,11 @@ fn windows_shrink_from_door_to_door() {
     let back = steps.steps().iter().filter(|step| matches!(step, Step::Back { .. })).count();
     assert_eq!(back, 3);
     // From the other side of the room the last door is hidden.
-    let aside = Eye { at: DVec3::new(3.9, 0.0, 2.0), ..eye };
+    let aside = PlanEye { at: DVec3::new(3.9, 0.0, 2.0), ..eye };
     let seen = visits(&plan, &aside, &screen(), &Options::default(), &mut NoTrace).unwrap();
     assert_eq!(seen.last().map(|visit| visit.cell), Some(2));
     // An eye in the second room that looks away from the first does not see it.
-    let second = Eye { at: DVec3::new(6.0, 0.0, 7.0), cell: 1, focal: 24.0 };
+    let second = PlanEye { at: DVec3::new(6.0, 0.0, 7.0), cell: 1, focal: 24.0 };
     let cells = visits(&plan, &second, &screen(), &Options::default(), &mut NoTrace).unwrap();
     assert_eq!(cells.iter().map(|visit| visit.cell).collect::<Vec<_>>(), [1, 2]);
 }
@@ -131,7 +131,7 @@ fn walls_are_left_beside_doors() {
 fn visits_are_charged_to_the_budget() {
     let (rooms, doors) = rooms(&mut Random(5), 0.0);
     let plan = Plan::of_rooms(&rooms, &doors, 2.0).unwrap();
-    let eye = Eye { at: DVec3::new(1.0, 0.0, 1.0), cell: 0, focal: 24.0 };
+    let eye = PlanEye { at: DVec3::new(1.0, 0.0, 1.0), cell: 0, focal: 24.0 };
     let within = |bytes: u64| Screen { work: Work::with_budget(bytes, "the budget"), ..screen() };
     let visit = |screen: &Screen| visits(&plan, &eye, screen, &Options::default(), &mut NoTrace);
     let refused = visit(&within(100)).unwrap_err();
@@ -148,7 +148,7 @@ fn wrong_plans_and_too_many_visits_are_errors() {
     let error = Plan::of_rooms(std::slice::from_ref(&square), &[outer], 2.0).unwrap_err();
     assert!(error.to_string().contains("door 0, in the walls of 1 rooms"), "{error}");
     let portal = Portal { corners: vec![DVec3::ZERO; 3], to: 7 };
-    let cell = Cell { walls: Vec::new(), portals: vec![portal] };
+    let cell = ConvexRoom { walls: Vec::new(), portals: vec![portal] };
     assert!(Plan::new(vec![cell]).is_err());
     let bent = [(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)].map(DVec2::from).to_vec();
     let error = Plan::of_rooms(&[bent], &[], 2.0).unwrap_err().to_string();
@@ -156,11 +156,11 @@ fn wrong_plans_and_too_many_visits_are_errors() {
     let odd = vec![DVec2::new(f64::NAN, 0.0), DVec2::X, DVec2::Y];
     assert!(Plan::of_rooms(&[odd], &[], 2.0).is_err());
     let plan = Plan::of_rooms(&[square], &[], 2.0).unwrap();
-    let eye = Eye { at: DVec3::new(1.0, 0.0, 1.0), cell: 0, focal: 24.0 };
-    let visit = |eye: &Eye, max_visits| {
+    let eye = PlanEye { at: DVec3::new(1.0, 0.0, 1.0), cell: 0, focal: 24.0 };
+    let visit = |eye: &PlanEye, max_visits| {
         visits(&plan, eye, &screen(), &Options { max_visits }, &mut NoTrace)
     };
     assert_eq!(visit(&eye, 1).unwrap().len(), 1);
     assert!(visit(&eye, 0).is_err());
-    assert!(visit(&Eye { cell: 1, ..eye }, 9).is_err());
+    assert!(visit(&PlanEye { cell: 1, ..eye }, 9).is_err());
 }

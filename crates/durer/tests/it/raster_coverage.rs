@@ -3,7 +3,7 @@
 use durer::curve::Contours;
 use durer::math::DVec2;
 use durer::raster::coverage::{
-    Face, FillRule, Options, Overlap, PartitionStep, Step, cell_sums, fill, fill_partition,
+    FillRule, Options, Overlap, PartitionFace, PartitionStep, Step, cell_sums, fill, fill_partition,
 };
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
@@ -438,7 +438,7 @@ fn a_million_vertices_that_cross_themselves_are_filled() {
 }
 
 /// Returns triangles of a jittered grid over the whole target, each in a random colour.
-fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<Face> {
+fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<PartitionFace> {
     let step = side / cells as f64;
     let points: Vec<DVec2> = (0..(cells + 1) * (cells + 1))
         .map(|i| {
@@ -454,7 +454,7 @@ fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<Face> {
         let a = i / cells * (cells + 1) + i % cells;
         for t in [[a, a + 1, a + cells + 2], [a, a + cells + 1, a + cells + 2]] {
             let color = [(random.next() * 255.0) as u8, 90, 160, 255];
-            faces.push(Face { contours: Contours::polygon(t.map(|i| points[i])), color });
+            faces.push(PartitionFace { contours: Contours::polygon(t.map(|i| points[i])), color });
         }
     }
     faces

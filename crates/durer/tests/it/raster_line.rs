@@ -3,9 +3,9 @@
 use crate::raster_coverage::Random;
 use durer::math::IVec2;
 use durer::raster::line::anti_aliased::{self, SmoothLine};
-use durer::raster::line::double_step::{self, Pattern};
-use durer::raster::line::run_slice::{self, Run};
-use durer::raster::line::tiled::{self, Line};
+use durer::raster::line::double_step::{self, StepPattern};
+use durer::raster::line::run_slice::{self, RunKind};
+use durer::raster::line::tiled::{self, PixelLine};
 use durer::raster::line::{LineRasterizer, Options, Step, bresenham};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
@@ -118,11 +118,11 @@ fn runs_have_the_lengths_that_their_decisions_say() {
     let runs: Vec<_> =
         steps.steps().iter().map(|s| (s.run, s.e, s.pixels().count(), s.is_cut)).collect();
     let expected = [
-        (Run::First, 0, 2, false),
-        (Run::Long, -6, 4, false),
-        (Run::Long, -4, 4, false),
-        (Run::Long, -2, 4, false),
-        (Run::Short, 0, 2, true),
+        (RunKind::First, 0, 2, false),
+        (RunKind::Long, -6, 4, false),
+        (RunKind::Long, -4, 4, false),
+        (RunKind::Long, -2, 4, false),
+        (RunKind::Short, 0, 2, true),
     ];
     assert_eq!(runs, expected);
     let mut random = Random(6);
@@ -135,7 +135,7 @@ fn runs_have_the_lengths_that_their_decisions_say() {
             assert_eq!(run_slice::replay(steps.steps()), found);
             let d = (b - a).abs();
             assert!(steps.steps().len() as i32 <= d.min_element() + 1, "{a} {b}");
-            let whole = steps.steps().iter().filter(|s| s.run != Run::First && !s.is_cut);
+            let whole = steps.steps().iter().filter(|s| s.run != RunKind::First && !s.is_cut);
             let q = d.max_element() / d.min_element().max(1);
             for step in whole {
                 let expected = if step.e < 0 { q + 1 } else { q };
@@ -153,8 +153,8 @@ fn two_steps_have_one_of_four_patterns() {
     let pair = |pattern, d, pixels| double_step::Step::Pair { pattern, d, pixels };
     let expected = [
         double_step::Step::Start { pixel: at(0, 0), d: -3 },
-        pair(Pattern::First, -3, [at(1, 1), at(2, 1)]),
-        pair(Pattern::First, -1, [at(3, 2), at(4, 2)]),
+        pair(StepPattern::First, -3, [at(1, 1), at(2, 1)]),
+        pair(StepPattern::First, -1, [at(3, 2), at(4, 2)]),
         // The last E in the lecture.
         double_step::Step::Last { e: 5, pixel: at(5, 3) },
     ];
@@ -170,7 +170,7 @@ fn two_steps_have_one_of_four_patterns() {
         let mut decisions = 0;
         for step in steps.steps() {
             let double_step::Step::Pair { pattern, .. } = step else { continue };
-            assert!(*pattern != if is_flat { Pattern::Aslant } else { Pattern::Straight });
+            assert!(*pattern != if is_flat { StepPattern::Aslant } else { StepPattern::Straight });
             decisions += pattern.decisions();
         }
         assert!(decisions as i32 <= d.max_element());
@@ -179,7 +179,7 @@ fn two_steps_have_one_of_four_patterns() {
     let mut steps = Recorder::default();
     double_step::draw(at(0, 0), at(80, 10), &Options::default(), |_| {}, &mut steps);
     let simple = |step: &&double_step::Step| {
-        matches!(step, double_step::Step::Pair { pattern: Pattern::Straight, .. })
+        matches!(step, double_step::Step::Pair { pattern: StepPattern::Straight, .. })
     };
     assert_eq!(steps.steps().iter().filter(simple).count(), 30);
 }
@@ -254,7 +254,7 @@ fn tiled_lines_are_bresenhams_in_their_order() {
         let (low, high) = [(-50.0, 350.0), (0.0, 127.0), (-1e5, 1e5), (-2e9, 2e9)][round / 4 % 4];
         // Few lines and many in one tile, short ones, points, and ties at 45 degrees and halfway.
         let count = [5, 60, 900][round % 3];
-        let mut lines: Vec<Line<u16>> = Vec::new();
+        let mut lines: Vec<PixelLine<u16>> = Vec::new();
         for value in 1..=count {
             let mut corner = || {
                 let p = random.point(low, high);
@@ -263,12 +263,12 @@ fn tiled_lines_are_bresenhams_in_their_order() {
             let (from, far) = (corner(), corner());
             let step = IVec2::new(i32::from(value) % 9 - 4, i32::from(value) % 5 - 2);
             let to = if value % 3 == 0 { from.saturating_add(step * 4) } else { far };
-            lines.push(Line { from, to, value });
+            lines.push(PixelLine { from, to, value });
         }
         let mut expected = Pixels::new(width, height, 0);
         let corner = IVec2::new(width as i32 - 1, height as i32 - 1);
         let options = Options { window: Some((IVec2::ZERO, corner)) };
-        for Line { from, to, value } in &lines {
+        for PixelLine { from, to, value } in &lines {
             let plot = |p: IVec2| expected.set(p.x as u32, p.y as u32, *value);
             bresenham::draw(*from, *to, &options, plot, &mut NoTrace);
         }
@@ -302,7 +302,7 @@ fn every_short_slope_is_bresenhams_in_a_tile() {
             for [ax, ay, bx, by] in if (steps + rise) % 3 == 0 { &ends[..] } else { &ends[..2] } {
                 let (from, to) = (IVec2::new(*ax, *ay), IVec2::new(*bx, *by));
                 // Enough to draw the tile separately.
-                let lines = [Line { from, to, value: 1_u8 }; 24];
+                let lines = [PixelLine { from, to, value: 1_u8 }; 24];
                 let (width, height) = (ax.max(bx) + 1, ay.max(by) + 1);
                 let mut found = Pixels::new(width as u32, height as u32, 0);
                 tiled::draw(&lines, &mut found, &mut NoTrace);

@@ -6,9 +6,11 @@ use durer::curve::{Contours, Path};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::{FillRule, Overlap};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
-use durer::raster::paint::{Blend, Blending, Canvas, Filter, MaskKind, Options, Paint, Pattern};
+use durer::raster::paint::{
+    BlendFunction, Blending, Canvas, ImageFilter, MaskKind, Options, Paint, Pattern,
+};
 use durer::target::Pixels;
-use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::gradient::{Gradient, GradientShape, Spread};
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
@@ -28,7 +30,7 @@ fn rendered(canvas: &Canvas, side: u32, below: [u8; 4]) -> Pixels<[u8; 4]> {
     target
 }
 
-fn gradient(shape: Shape, spread: Spread) -> Paint {
+fn gradient(shape: GradientShape, spread: Spread) -> Paint {
     let stops = vec![(0.0, [255, 0, 0, 255]), (1.0, [0, 0, 255, 255])];
     Paint::Gradient(Arc::new(Gradient { shape, stops, spread, transform: DAffine2::IDENTITY }))
 }
@@ -36,7 +38,7 @@ fn gradient(shape: Shape, spread: Spread) -> Paint {
 /// Returns a drawing with some of everything.
 fn card(options: Options) -> Canvas {
     let mut c = Canvas::new(300, 200, options).unwrap();
-    let shape = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(100.0, 50.0) };
+    let shape = GradientShape::Linear { start: DVec2::ZERO, end: DVec2::new(100.0, 50.0) };
     let background = gradient(shape, Spread::Reflect);
     c.fill(&Path::rectangle(5.0, 5.0, 290.0, 190.0), FillRule::NonZero, &background, 0.5);
     c.push_clip(&Path::circle(DVec2::new(100.0, 100.0), 80.0), FillRule::NonZero);
@@ -183,7 +185,7 @@ fn a_group_is_one_layer() {
 }
 
 /// Returns a square of one colour over another, blended as a group.
-fn blended(blend: Blend, layer: Paint, below: [u8; 4], options: Options) -> [u8; 4] {
+fn blended(blend: BlendFunction, layer: Paint, below: [u8; 4], options: Options) -> [u8; 4] {
     let mut canvas = Canvas::new(4, 4, options).unwrap();
     canvas.push_group();
     canvas.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &layer, 1.0);
@@ -196,32 +198,41 @@ fn groups_blend_with_what_is_below() {
     let below = [51, 102, 204, 255];
     let by = |blend| blended(blend, color(153, 128, 26, 255), below, Options::default());
     // Half of each figure, half of the backdrop.
-    assert_eq!(by(Blend::Normal), [102, 115, 115, 255]);
-    assert_eq!(by(Blend::Multiply), [41, 77, 113, 255]);
-    assert_eq!(by(Blend::Screen), [112, 141, 207, 255]);
-    assert_eq!(by(Blend::Difference), [76, 64, 191, 255]);
-    assert_eq!(by(Blend::PlusLighter), [128, 166, 217, 255]);
+    assert_eq!(by(BlendFunction::Normal), [102, 115, 115, 255]);
+    assert_eq!(by(BlendFunction::Multiply), [41, 77, 113, 255]);
+    assert_eq!(by(BlendFunction::Screen), [112, 141, 207, 255]);
+    assert_eq!(by(BlendFunction::Difference), [76, 64, 191, 255]);
+    assert_eq!(by(BlendFunction::PlusLighter), [128, 166, 217, 255]);
     let linear = Options { blending: Blending::Linear, ..Options::default() };
-    let all = blended(Blend::Multiply, color(255, 255, 255, 255), below, linear);
+    let all = blended(BlendFunction::Multiply, color(255, 255, 255, 255), below, linear);
     assert_eq!(all, below);
 }
 
 #[test]
 fn where_nothing_is_below_layers_keep_their_colour() {
-    for blend in [Blend::Multiply, Blend::Hue, Blend::ColorBurn, Blend::PlusLighter] {
+    for blend in [
+        BlendFunction::Multiply,
+        BlendFunction::Hue,
+        BlendFunction::ColorBurn,
+        BlendFunction::PlusLighter,
+    ] {
         let found = blended(blend, color(200, 40, 0, 255), [0; 4], Options::default());
         assert_eq!(found, [199, 40, 0, 128], "{blend:?}");
     }
     // A backdrop that covers half of it contributes half of its colour.
-    let found =
-        blended(Blend::Multiply, color(0, 255, 0, 255), [255, 0, 0, 128], Options::default());
+    let found = blended(
+        BlendFunction::Multiply,
+        color(0, 255, 0, 255),
+        [255, 0, 0, 128],
+        Options::default(),
+    );
     assert_eq!(found[3], 192);
     assert!(found[0].abs_diff(85) <= 1 && found[1].abs_diff(84) <= 2, "{found:?}");
 }
 
 #[test]
 fn gradients_pad_repeat_and_reflect() {
-    let shape = Shape::Linear { start: DVec2::new(10.0, 0.0), end: DVec2::new(20.0, 0.0) };
+    let shape = GradientShape::Linear { start: DVec2::new(10.0, 0.0), end: DVec2::new(20.0, 0.0) };
     let red = |spread, x| {
         let mut c = canvas(40);
         c.fill(
@@ -236,7 +247,7 @@ fn gradients_pad_repeat_and_reflect() {
     assert!(red(Spread::Repeat, 20) > 235 && red(Spread::Repeat, 19) < 20);
     assert!(red(Spread::Reflect, 20) < 20 && red(Spread::Reflect, 29) > 235);
     let (center, focus) = (DVec2::splat(20.0), DVec2::splat(20.0));
-    let radial = Shape::Radial { center, radius: 20.0, focus, focus_radius: 0.0 };
+    let radial = GradientShape::Radial { center, radius: 20.0, focus, focus_radius: 0.0 };
     let mut c = canvas(40);
     c.fill(
         &Path::rectangle(0.0, 0.0, 40.0, 40.0),
@@ -255,7 +266,8 @@ fn gradients_pad_repeat_and_reflect() {
 fn hard_stops_are_sharp_and_in_place() {
     let (red, green, blue) = ([255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]);
     let row = |stops: &[(f64, [u8; 4])], (start, end): (f64, f64), spread| {
-        let shape = Shape::Linear { start: DVec2::new(start, 0.0), end: DVec2::new(end, 0.0) };
+        let shape =
+            GradientShape::Linear { start: DVec2::new(start, 0.0), end: DVec2::new(end, 0.0) };
         let (stops, transform) = (stops.to_vec(), DAffine2::IDENTITY);
         let paint = Paint::Gradient(Arc::new(Gradient { shape, stops, spread, transform }));
         let mut c = canvas(40);
@@ -307,7 +319,7 @@ fn patterns_repeat() {
         image: Arc::new(image),
         transform,
         spread: Some(Spread::Repeat),
-        filter: Filter::Nearest,
+        filter: ImageFilter::Nearest,
     };
     let mut c = canvas(20);
     let paint = Paint::Pattern(Arc::new(pattern));
@@ -445,7 +457,7 @@ fn empty_targets_and_strange_paints_are_defined() {
     assert!(Canvas::new(40_000, 1, Options::default()).is_err());
     let mut c = canvas(10);
     c.set_transform(DAffine2::from_scale(DVec2::new(f64::NAN, 0.0)));
-    let shape = Shape::Linear { start: DVec2::NAN, end: DVec2::ONE };
+    let shape = GradientShape::Linear { start: DVec2::NAN, end: DVec2::ONE };
     c.fill(
         &Path::rectangle(0.0, 0.0, 5.0, 5.0),
         FillRule::NonZero,
@@ -601,7 +613,8 @@ fn images_end_repeat_or_turn_at_their_border() {
     let image = Arc::new(Pixels::from_data(2, 1, vec![[10, 0, 0, 255], [20, 0, 0, 255]]).unwrap());
     let row = |spread| {
         let transform = DAffine2::from_translation(DVec2::new(3.0, 0.0));
-        let pattern = Pattern { image: image.clone(), transform, spread, filter: Filter::Nearest };
+        let pattern =
+            Pattern { image: image.clone(), transform, spread, filter: ImageFilter::Nearest };
         let mut c = canvas(8);
         let all = Path::rectangle(0.0, 0.0, 8.0, 8.0);
         c.fill(&all, FillRule::NonZero, &Paint::Pattern(Arc::new(pattern)), 1.0);

@@ -1,7 +1,7 @@
 //! Points: squares and discs, beside their definitions, and as commands draw them.
 
 use crate::raster_coverage::Random;
-use durer::commands::{Command, DisplayLists, Pipeline, Primitive, Vertex, execute};
+use durer::commands::{Command, CornerVertex, DisplayLists, Pipeline, Primitive, execute};
 use durer::fragment::{Blend, FragmentState, Scissor};
 use durer::math::{DVec2, DVec3, IVec2, Vec4};
 use durer::raster::point::{MAX_SIZE, Options, Step, draw, replay};
@@ -127,7 +127,7 @@ fn drawn(commands: &[Command], at: &[(f64, f64)]) -> durer::Result<Framebuffer> 
         stencil: None,
         index: None,
     };
-    let vertex = |&(x, y): &(f64, f64)| Vertex::from(DVec3::new(x, y, 0.0));
+    let vertex = |&(x, y): &(f64, f64)| CornerVertex::from(DVec3::new(x, y, 0.0));
     let draw = Command::Draw(Primitive::Points, at.iter().map(vertex).collect());
     let all: Vec<Command> = [black].into_iter().chain(commands.to_vec()).chain([draw]).collect();
     execute(&all, &DisplayLists::default(), &mut Pipeline::default(), &mut target)?;

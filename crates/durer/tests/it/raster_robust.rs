@@ -4,7 +4,7 @@ use crate::raster_coverage::Random;
 use durer::curve::{Contours, Path, flatten, stroke_font};
 use durer::math::{DVec2, IVec2};
 use durer::raster::Span;
-use durer::raster::coverage::{Face, FillRule, fill_partition};
+use durer::raster::coverage::{FillRule, PartitionFace, fill_partition};
 use durer::raster::line::anti_aliased::{self, SmoothLine};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
 use durer::raster::line::{LineRasterizer, Options as LineOptions};
@@ -73,7 +73,7 @@ fn empty_targets_take_everything() {
         let mut target = Pixels::new(width, height, [7; 4]);
         canvas.render(&mut target).unwrap();
         let contours = Contours::polygon([DVec2::ZERO, DVec2::X, DVec2::Y]);
-        let face = Face { contours: contours.clone(), color: [1; 4] };
+        let face = PartitionFace { contours: contours.clone(), color: [1; 4] };
         assert_eq!(fill_partition(&[face], &mut target, &mut NoTrace), Ok(0));
         let options = polygon::Options::default();
         for method in PolygonRasterizer::ALL {

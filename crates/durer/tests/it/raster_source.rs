@@ -2,10 +2,10 @@
 
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::coverage::{Face, FillRule, fill_partition};
-use durer::raster::paint::{Blending, Canvas, Filter, Options, Paint, Pattern};
+use durer::raster::coverage::{FillRule, PartitionFace, fill_partition};
+use durer::raster::paint::{Blending, Canvas, ImageFilter, Options, Paint, Pattern};
 use durer::target::Pixels;
-use durer::target::gradient::{Gradient, Shape, Spread};
+use durer::target::gradient::{Gradient, GradientShape, Spread};
 use durer::trace::NoTrace;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ fn square(paint: &Paint, options: Options) -> Pixels<[u8; 4]> {
 }
 
 /// Returns the whiteness around the middle of a pixel of a gradient from black at 0 to white at 1; `None` outside.
-fn parameter(shape: Shape, x: u32, y: u32) -> Option<f64> {
+fn parameter(shape: GradientShape, x: u32, y: u32) -> Option<f64> {
     let stops = vec![(0.0, [0, 0, 0, 255]), (1.0, [255; 4])];
     let transform = DAffine2::IDENTITY;
     let gradient = Gradient { shape, stops, spread: Spread::Pad, transform };
@@ -32,7 +32,7 @@ fn parameter(shape: Shape, x: u32, y: u32) -> Option<f64> {
 fn circles_that_touch_from_within_cover_their_side_only() {
     // The focus is on the outer circle: t = |p − f|² / (2 (p − f) · (c − f)).
     let (center, focus) = (DVec2::new(20.5, 20.5), DVec2::new(10.5, 20.5));
-    let shape = Shape::Radial { center, radius: 10.0, focus, focus_radius: 0.0 };
+    let shape = GradientShape::Radial { center, radius: 10.0, focus, focus_radius: 0.0 };
     for (x, y) in [(20, 20), (12, 20), (25, 20), (20, 14), (12, 24)] {
         let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) - focus;
         let expected = (p.length_squared() / (2.0 * p.dot(center - focus))).min(1.0);
@@ -45,14 +45,14 @@ fn circles_that_touch_from_within_cover_their_side_only() {
 #[test]
 fn circles_that_shrink_outwards_run_inwards() {
     let center = DVec2::splat(20.5);
-    let shape = Shape::Radial { center, radius: 5.0, focus: center, focus_radius: 15.0 };
+    let shape = GradientShape::Radial { center, radius: 5.0, focus: center, focus_radius: 15.0 };
     for (x, expected) in [(30, 0.5), (33, 0.2), (25, 1.0), (22, 1.0), (39, 0.0)] {
         let found = parameter(shape, x, 20).expect("covered");
         assert!((found - expected).abs() < 0.006, "{x}: {found}");
     }
     // A cone that ends in its apex: beyond it there is nothing.
     let (center, focus) = (DVec2::new(25.5, 20.5), DVec2::new(5.5, 20.5));
-    let cone = Shape::Radial { center, radius: 2.0, focus, focus_radius: 10.0 };
+    let cone = GradientShape::Radial { center, radius: 2.0, focus, focus_radius: 10.0 };
     assert_eq!(parameter(cone, 39, 20), None);
     let inside = parameter(cone, 5, 20).expect("covered");
     assert!((inside - 10.0 / 28.0).abs() < 0.006, "{inside}");
@@ -62,8 +62,8 @@ fn circles_that_shrink_outwards_run_inwards() {
 fn gradients_without_extent_have_the_last_colour() {
     let (start, center) = (DVec2::splat(9.0), DVec2::splat(20.0));
     for shape in [
-        Shape::Linear { start, end: start },
-        Shape::Radial { center, radius: 0.0, focus: center, focus_radius: 0.0 },
+        GradientShape::Linear { start, end: start },
+        GradientShape::Radial { center, radius: 0.0, focus: center, focus_radius: 0.0 },
     ] {
         assert_eq!(parameter(shape, 3, 3), Some(1.0), "{shape:?}");
     }
@@ -77,7 +77,7 @@ fn clear_pixels_of_an_image_lend_no_colour() {
         image: Arc::new(image),
         transform,
         spread: Some(Spread::Pad),
-        filter: Filter::Bilinear,
+        filter: ImageFilter::Bilinear,
     };
     let picture = square(&Paint::Pattern(Arc::new(pattern)), Options::default());
     let mut alphas = Vec::new();
@@ -93,7 +93,7 @@ fn clear_pixels_of_an_image_lend_no_colour() {
 }
 
 /// Returns a picture of 40 × 40 with a one-row image, enlarged to this many pixels per image pixel.
-fn enlarged(row: &[u8], by: f64, filter: Filter) -> Vec<u8> {
+fn enlarged(row: &[u8], by: f64, filter: ImageFilter) -> Vec<u8> {
     let data = row.iter().map(|v| [*v, *v, *v, 255]).collect();
     let image = Arc::new(Pixels::from_data(row.len() as u32, 1, data).expect("size"));
     let transform = DAffine2::from_scale(DVec2::splat(by));
@@ -104,17 +104,19 @@ fn enlarged(row: &[u8], by: f64, filter: Filter) -> Vec<u8> {
 
 #[test]
 fn mitchell_s_filter_keeps_ramps_and_overshoots_at_steps() {
-    let ramp = enlarged(&[40, 60, 80, 100, 120, 140, 160, 180, 200, 220], 4.0, Filter::Bicubic);
+    let ramp =
+        enlarged(&[40, 60, 80, 100, 120, 140, 160, 180, 200, 220], 4.0, ImageFilter::Bicubic);
     let line = |x: usize| 40.0 + ((x as f64 + 0.5) / 4.0 - 0.5) * 20.0;
     for (x, v) in ramp.iter().enumerate().take(33).skip(8) {
         assert!((f64::from(*v) - line(x)).abs() <= 0.5, "{x}: {v}");
     }
-    let step = enlarged(&[100, 100, 100, 100, 100, 200, 200, 200, 200, 200], 4.0, Filter::Bicubic);
+    let step =
+        enlarged(&[100, 100, 100, 100, 100, 200, 200, 200, 200, 200], 4.0, ImageFilter::Bicubic);
     assert!(step[13..19].iter().any(|v| *v < 100) && step[21..27].iter().any(|v| *v > 200));
     // At a pixel's centre its neighbours have a weight of 1/18 each, equally on both sides.
     let weights = [1.0 / 18.0, 16.0 / 18.0, 1.0 / 18.0];
     let image = [0, 0, 0, 0, 180, 0, 0, 0];
-    let odd = enlarged(&image, 5.0, Filter::Bicubic);
+    let odd = enlarged(&image, 5.0, ImageFilter::Bicubic);
     let found = [odd[17], odd[22], odd[27]].map(f64::from);
     assert!(found.iter().zip(weights).all(|(f, w)| (f - 180.0 * w).abs() <= 0.51), "{found:?}");
 }
@@ -122,7 +124,7 @@ fn mitchell_s_filter_keeps_ramps_and_overshoots_at_steps() {
 #[test]
 fn areas_are_means_of_what_a_pixel_covers() {
     let row: Vec<u8> = (0..320).map(|i| if i % 32 < 12 { 0 } else { 240 }).collect();
-    let found = enlarged(&row, 0.125, Filter::Area);
+    let found = enlarged(&row, 0.125, ImageFilter::Area);
     // Periods of four pixels: black, half black, white, white.
     for (i, v) in found.iter().enumerate().take(36).skip(4) {
         let wanted = [0.0, 120.0, 240.0, 240.0][i % 4];
@@ -154,8 +156,8 @@ fn linear_light_comes_back_as_the_nearest_byte() {
 #[test]
 fn faces_mix_with_what_is_below_and_with_each_other() {
     let all = || Path::rectangle(0.0, 0.0, 4.0, 4.0);
-    let face = |color| Face { contours: durer::curve::flatten(&all(), 0.1), color };
-    let drawn = |faces: &[Face], below| {
+    let face = |color| PartitionFace { contours: durer::curve::flatten(&all(), 0.1), color };
+    let drawn = |faces: &[PartitionFace], below| {
         let mut picture = Pixels::new(4, 4, below);
         fill_partition(faces, &mut picture, &mut NoTrace).expect("size");
         picture.get(1, 1).expect("pixel")
@@ -178,7 +180,7 @@ fn faces_mix_with_what_is_below_and_with_each_other() {
 
 #[test]
 fn hard_spans_end_where_they_end_in_every_paint() {
-    let shape = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(90.0, 0.0) };
+    let shape = GradientShape::Linear { start: DVec2::ZERO, end: DVec2::new(90.0, 0.0) };
     let stops = vec![(0.0, [0, 0, 0, 255]), (1.0, [9, 9, 9, 255])];
     let (spread, transform) = (Spread::Pad, DAffine2::IDENTITY);
     let gradient = Gradient { shape, stops, spread, transform };

@@ -7,7 +7,7 @@ use durer::clip::polygon::{BooleanOp, Shapes, WindingRule, overlay};
 use durer::curve::{Contours, Path, PathElement, flatten};
 use durer::math::DVec2;
 use durer::raster::coverage::fill;
-use durer::raster::line::wide::{Cap, Join, Part, Step, Stroke, outline};
+use durer::raster::line::wide::{Cap, Join, Step, Stroke, StrokePart, outline};
 use durer::trace::{Counts, NoTrace, Recorder};
 
 const TOLERANCE: f64 = 0.01;
@@ -355,7 +355,7 @@ fn steps_of_strokes_rebuild_the_outline() {
             match *step {
                 Step::Ring => rings.push(Vec::new()),
                 Step::Point { vertex, point, part } => {
-                    assert!(part != Part::Pivot || vertex == point);
+                    assert!(part != StrokePart::Pivot || vertex == point);
                     rings.last_mut().expect("a ring").push(point);
                     parts.push(part);
                 }
@@ -364,7 +364,7 @@ fn steps_of_strokes_rebuild_the_outline() {
         let mut replayed = Contours::new();
         rings.into_iter().for_each(|ring| replayed.push(ring, true));
         assert_eq!(replayed, traced, "{case}");
-        assert!(parts.contains(&Part::Side) && parts.contains(&Part::Join));
+        assert!(parts.contains(&StrokePart::Side) && parts.contains(&StrokePart::Join));
         let mut counts = Counts::default();
         assert_eq!(outline(&path, &stroke, TOLERANCE, &mut counts).expect("style"), traced);
         assert_eq!(counts.steps, recorder.steps().len() as u64);

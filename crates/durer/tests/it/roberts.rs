@@ -6,17 +6,17 @@ use durer::math::DVec3;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::line::hidden_line;
-use durer::visibility::line::roberts::{self, Body, Line, Options, Step, draw};
+use durer::visibility::line::roberts::{self, ConvexBody, Options, Step, VisibleLine, draw};
 use durer::work::Work;
 
 const ISO: DVec3 = DVec3::new(1.0, -1.7, 0.9);
 
-fn bodies(triangles: &[Triangle]) -> Vec<Body> {
+fn bodies(triangles: &[Triangle]) -> Vec<ConvexBody> {
     let faces: Vec<Vec<DVec3>> = triangles.iter().map(|t| t.to_vec()).collect();
-    Body::several(&faces).unwrap()
+    ConvexBody::several(&faces).unwrap()
 }
 
-fn lines(bodies: &[Body], eye: Eye) -> Vec<Line> {
+fn lines(bodies: &[ConvexBody], eye: Eye) -> Vec<VisibleLine> {
     let mut steps = Recorder::default();
     let lines = draw(bodies, eye, &Options::default(), &Work::default(), &mut steps).unwrap();
     assert_eq!(
@@ -28,13 +28,13 @@ fn lines(bodies: &[Body], eye: Eye) -> Vec<Line> {
 }
 
 /// Returns the visible length in a plane: across the direction, or at distance 1 from the eye.
-fn length(lines: &[Line], eye: Eye, to_eye: DVec3) -> f64 {
+fn length(lines: &[VisibleLine], eye: Eye, to_eye: DVec3) -> f64 {
     let n = to_eye.normalize();
     let place = |p: DVec3| match eye {
         Eye::At(at) => (p - at) / (at - p).dot(n),
         Eye::Along(_) => p - n * p.dot(n),
     };
-    lines.iter().flat_map(Line::parts).map(|[p, q]| place(p).distance(place(q))).sum()
+    lines.iter().flat_map(VisibleLine::parts).map(|[p, q]| place(p).distance(place(q))).sum()
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn pictures_are_those_of_quantitative_invisibility() {
 }
 
 /// Compares points of lines with rays to the eye, except close to an edge of a body.
-fn check_by_rays(bodies: &[Body], lines: &[Line], eye: Eye) {
+fn check_by_rays(bodies: &[ConvexBody], lines: &[VisibleLine], eye: Eye) {
     for line in lines {
         for k in 0..40 {
             let t = (f64::from(k) + 0.37) / 40.0;
@@ -80,7 +80,7 @@ fn check_by_rays(bodies: &[Body], lines: &[Line], eye: Eye) {
                 Eye::Along(direction) => -direction,
             };
             // Length of the ray inside a body; less than a thousandth is too close to decide.
-            let inside = |body: &Body| {
+            let inside = |body: &ConvexBody| {
                 let (mut from, mut to) =
                     (0.0_f64, if matches!(eye, Eye::At(_)) { 1.0 } else { 1e3_f64 });
                 for plane in body.planes() {
@@ -153,11 +153,11 @@ fn what_touches_is_seen() {
     let found =
         draw(&bodies, eye, &Options { junctions: false }, &Work::default(), &mut NoTrace).unwrap();
     // The foot of the small box on the large one.
-    let foot = |line: &&Line| line.ends.iter().all(|p| p.z == 2.0) && line.bodies == [1, 1];
+    let foot = |line: &&VisibleLine| line.ends.iter().all(|p| p.z == 2.0) && line.bodies == [1, 1];
     let seen = found.iter().filter(foot).filter(|line| line.visible == [[0.0, 1.0]]);
     assert_eq!(seen.count(), 2);
     // It hides the part of the rear edge behind it.
-    let back = |line: &&Line| line.ends.iter().all(|p| p.y == 4.0 && p.z == 2.0);
+    let back = |line: &&VisibleLine| line.ends.iter().all(|p| p.y == 4.0 && p.z == 2.0);
     let back = found.iter().find(back).unwrap();
     assert_ne!(back.visible, [[0.0, 1.0]]);
 }
@@ -186,8 +186,8 @@ fn bodies_must_be_closed_and_convex() {
         triangles.iter().map(|t| t.to_vec()).collect()
     };
     let cube = faces(&cuboid([0.0; 3], [1.0; 3]));
-    assert!(Body::new(&cube).is_ok());
-    let reported = |faces: &[Vec<DVec3>]| Body::new(faces).unwrap_err().to_string();
+    assert!(ConvexBody::new(&cube).is_ok());
+    let reported = |faces: &[Vec<DVec3>]| ConvexBody::new(faces).unwrap_err().to_string();
     assert!(reported(&cube[1..]).contains("closed"));
     assert!(reported(&cube[..2]).contains("volume"));
     assert!(reported(&[]).contains("closed"));
@@ -197,16 +197,16 @@ fn bodies_must_be_closed_and_convex() {
     assert!(reported(&dented).contains("convex"));
     let mut wrong = cube;
     wrong[0][0].x = f64::NAN;
-    assert!(Body::several(&wrong).is_err());
+    assert!(ConvexBody::several(&wrong).is_err());
     // Inside out, or with faces in any direction, the body is the same.
     let turned: Vec<Vec<DVec3>> = faces(&cuboid([0.0; 3], [1.0; 3]))
         .into_iter()
         .map(|f| f.into_iter().rev().collect())
         .collect();
-    let body = Body::new(&turned).unwrap();
+    let body = ConvexBody::new(&turned).unwrap();
     // The two triangles of a side have one plane, and their common edge is not an edge of the body.
     assert_eq!((body.planes().len(), body.edges().len(), body.corners().len()), (6, 12, 8));
-    assert_eq!(Body::several(&[]).unwrap(), []);
+    assert_eq!(ConvexBody::several(&[]).unwrap(), []);
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use durer::math::{DMat3, DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{
-    AlphaMode, Camera, Filter, Image, Light, LightKind, Material, MipFilter, Projection, Sampler,
-    Scene, ShadingModel, Texture, TextureRef, Wrap,
+    AlphaMode, Camera, Image, Light, LightKind, Material, MipFilter, Projection, Sampler, Scene,
+    ShadingModel, Texture, TextureFilter, TextureRef, Wrap,
 };
 use durer::shade::flat::shade_face;
 use durer::shade::gouraud::{Reflected, shade_vertex};
@@ -38,8 +38,8 @@ fn scene(material: Material, images: &[[[u8; 4]; 2]]) -> Scene {
         data: data.to_vec(),
     };
     let sampler = Sampler {
-        mag: Filter::Nearest,
-        min: Filter::Nearest,
+        mag: TextureFilter::Nearest,
+        min: TextureFilter::Nearest,
         mip: MipFilter::None,
         wrap_u: Wrap::Repeat,
         wrap_v: Wrap::Repeat,

@@ -5,7 +5,9 @@ use durer::math::{DMat3, DVec2, DVec3};
 use durer::target::NO_ITEM;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
-use durer::visibility::polygons::shadow_volumes::{Count, Options, Picture, Step, render, replay};
+use durer::visibility::polygons::shadow_volumes::{
+    Count, Options, ShadowPicture, Step, render, replay,
+};
 use durer::visibility::polygons::{Face, Screen};
 use durer::work::Work;
 
@@ -79,7 +81,7 @@ fn passed(faces: &[Face], own: u32, point: DVec3, light: Eye, closed: bool) -> O
 }
 
 /// Renders from one end, and compares everything that must agree with it.
-fn rendered(faces: &[Face], light: Eye, options: &Options) -> Picture {
+fn rendered(faces: &[Face], light: Eye, options: &Options) -> ShadowPicture {
     let mut steps = Recorder::default();
     let found = render(faces, &screen(), light, options, &mut steps).unwrap();
     assert_eq!(render(faces, &screen(), light, options, &mut NoTrace).unwrap(), found);

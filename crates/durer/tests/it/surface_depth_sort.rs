@@ -9,7 +9,7 @@ use durer::scene::Scene;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::surface::ScreenTriangle;
 use durer::visibility::surface::SurfaceInput;
-use durer::visibility::surface::depth_sort::{Cut, Options, Step, Test, order, render};
+use durer::visibility::surface::depth_sort::{CutLine, Options, PaintTest, Step, order, render};
 use std::collections::BTreeSet;
 
 #[test]
@@ -44,16 +44,16 @@ fn cycles_and_penetration_are_split_and_nothing_else() {
 
 #[test]
 fn every_test_gets_its_turn() {
-    let mut passed: BTreeSet<Test> = BTreeSet::new();
+    let mut passed: BTreeSet<PaintTest> = BTreeSet::new();
     for seed in 0..60 {
         passed.extend(steps(&random(seed)).iter().filter_map(|s| match s {
             Step::Tested { passed, .. } => *passed,
             _ => None,
         }));
     }
-    use Test::{BehindPlane, Boxes, Depths, InFrontOfPlane, Pixels, Projections};
+    use PaintTest::{BehindPlane, Boxes, Depths, InFrontOfPlane, Pixels, Projections};
     let all = [Depths, Boxes, InFrontOfPlane, BehindPlane, Projections, Pixels];
-    assert_eq!(all.map(Test::number), ["1", "2a", "2b", "2c", "2d", "pixels"]);
+    assert_eq!(all.map(PaintTest::number), ["1", "2a", "2b", "2c", "2d", "pixels"]);
     assert_eq!(passed.into_iter().collect::<Vec<_>>(), all);
 }
 
@@ -74,14 +74,14 @@ struct Replay<'a> {
 }
 
 impl Replay<'_> {
-    fn is_inner(&self, polygon: usize, cut: Cut, x: i32, y: i32) -> bool {
+    fn is_inner(&self, polygon: usize, cut: CutLine, x: i32, y: i32) -> bool {
         let of = |i: u32| &self.input.triangles[self.triangle[i as usize]];
         let key = |i: u32| (depth_at(of(i), x, y), of(i).item);
         match cut {
-            Cut::Plane { of } => key(polygon as u32) < key(of),
-            Cut::Edge { of: i, edge } => is_within_edge(of(i), edge, x, y),
-            Cut::Column(column) => x < column,
-            Cut::Row(row) => y < row,
+            CutLine::Plane { of } => key(polygon as u32) < key(of),
+            CutLine::Edge { of: i, edge } => is_within_edge(of(i), edge, x, y),
+            CutLine::Column(column) => x < column,
+            CutLine::Row(row) => y < row,
         }
     }
 }

@@ -11,7 +11,7 @@ use durer::target::Framebuffer;
 use durer::view::View;
 use durer::view::window::PixelRect;
 use durer::visibility::surface::SurfaceInput;
-use durer::visibility::surface::{Filter, ScreenTriangle};
+use durer::visibility::surface::{ScreenTriangle, TriangleFilter};
 
 /// Returns the depth of a triangle's plane at a pixel's centre.
 pub fn depth_at(t: &ScreenTriangle, x: i32, y: i32) -> f32 {
@@ -145,13 +145,13 @@ impl<'a> Prepared<'a> {
     }
 
     pub fn input(&self) -> SurfaceInput<'_> {
-        let filter = Filter::new(Cull::None, 0);
+        let filter = TriangleFilter::new(Cull::None, 0);
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 
     /// Returns the input for anti-aliasing, which includes triangles that miss all centres.
     pub fn fine_input(&self) -> SurfaceInput<'_> {
-        let filter = Filter::new(Cull::None, 128);
+        let filter = TriangleFilter::new(Cull::None, 128);
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 

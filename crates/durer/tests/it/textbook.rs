@@ -8,10 +8,10 @@ use durer::curve::Contours;
 use durer::fragment::fog::Fog;
 use durer::fragment::halftone::{as_light, clustered_dot, error_diffusion};
 use durer::math::{DVec2, IVec2, Rect, Vec4};
-use durer::raster::conic::{self, MAX_RADIUS, Region, circle, ellipse};
+use durer::raster::conic::{self, CurveRegion, MAX_RADIUS, circle, ellipse};
 use durer::raster::ear_clipping::ears;
 use durer::raster::interpolate::barycentric_2d;
-use durer::raster::line::pattern::{self, Pen};
+use durer::raster::line::pattern::{self, PenShape};
 use durer::raster::triangulate::{Step as Ear, triangulate_by_rule};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
@@ -62,7 +62,7 @@ fn the_decisions_of_a_circle_are_the_lectures() {
     // d = 1 − r; below 0 it grows by 2x + 3, else by 2(x − y) + 5 and y falls.
     let expected = [(0, 8, -7), (1, 8, -4), (2, 8, 1), (3, 7, -6), (4, 7, 3), (5, 6, 2)];
     assert_eq!(octant, expected);
-    assert!(steps.steps().iter().all(|s| s.region == Region::Octant));
+    assert!(steps.steps().iter().all(|s| s.region == CurveRegion::Octant));
     assert_eq!(sorted(conic::replay(steps.steps())), sorted(found));
 }
 
@@ -121,7 +121,8 @@ fn circles_at_the_rim_of_all_coordinates_and_beyond_the_limit() {
 #[test]
 fn pens_and_patterns_follow_the_thin_line() {
     let (a, b) = (IVec2::new(20, 5), IVec2::new(-4, 14));
-    let options = pattern::Options { pen: Pen::Square(3), pattern: 0x0f0f, repeat: 2, offset: 3 };
+    let options =
+        pattern::Options { pen: PenShape::Square(3), pattern: 0x0f0f, repeat: 2, offset: 3 };
     for (from, to) in [(a, b), (b, a)] {
         let mut steps = Recorder::default();
         let mut found = Vec::new();
@@ -139,10 +140,10 @@ fn pens_and_patterns_follow_the_thin_line() {
         pattern::draw(IVec2::ZERO, IVec2::new(3, 9), &options, |p| pixels.push(p), &mut NoTrace);
         pixels.len()
     };
-    assert_eq!([0, 1, 4].map(|w| thick(Pen::Replicated(w))), [0, 10, 40]);
-    assert_eq!(thick(Pen::Square(2)), 40);
+    assert_eq!([0, 1, 4].map(|w| thick(PenShape::Replicated(w))), [0, 10, 40]);
+    assert_eq!(thick(PenShape::Square(2)), 40);
     let mut count = 0;
-    let far = pattern::Options { pen: Pen::Square(4), ..Default::default() };
+    let far = pattern::Options { pen: PenShape::Square(4), ..Default::default() };
     pattern::draw(IVec2::MAX, IVec2::MAX, &far, |_| count += 1, &mut NoTrace);
     assert_eq!(count, 9, "what lies beyond i32 is left out");
 }
@@ -332,7 +333,7 @@ fn far_rings_go_around_the_window_as_maillot_has_it() {
 
 #[test]
 fn corners_between_the_regions_of_two_ends_are_turned_around() {
-    use maillot::Turn::{Basic, BorderToBorder, BorderToCorner, CornerToCorner};
+    use maillot::CornerReason::{Basic, BorderToBorder, BorderToCorner, CornerToCorner};
     let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
     let turns = |from: [f64; 2], to: [f64; 2]| {
         let ring = [from, to].map(DVec2::from);
@@ -380,7 +381,7 @@ fn a_window_within_a_polygon_turns_at_its_four_corners() {
 #[test]
 fn carpenters_masks_and_shares() {
     use durer::visibility::polygons::a_buffer::{
-        FULL, Fragment, Step, edge_distance, ordered_mask, replay, resolve, seen_masks,
+        FULL, FaceFragment, Step, edge_distance, ordered_mask, replay, resolve, seen_masks,
         visible_share, weights,
     };
     // E(x, y) = [ΔY (x − Xa) − ΔX (y − Ya)] / √(ΔX² + ΔY²).
@@ -402,7 +403,8 @@ fn carpenters_masks_and_shares() {
     assert_eq!(seen_masks(a, b, front), [0x00ff, 0xff00]);
     let [of_a, of_b] = seen_masks(a, b, front);
     assert_eq!((of_a & of_b, of_a | of_b), (0, a | b));
-    let fragment = |mask, z, red: f32| Fragment { mask, z, color: Vec4::new(red, 0.0, 0.0, 1.0) };
+    let fragment =
+        |mask, z, red: f32| FaceFragment { mask, z, color: Vec4::new(red, 0.0, 0.0, 1.0) };
     let all = [fragment(FULL, [2.0, 4.0], 0.0), fragment(0x00ff, [1.0, 3.0], 1.0)];
     let mut steps = Recorder::default();
     let (found, rest) = weights(&all, &mut steps);

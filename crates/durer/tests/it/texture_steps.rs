@@ -2,11 +2,11 @@
 
 use crate::raster_coverage::Random;
 use durer::math::{Vec2, Vec4};
-use durer::scene::{Filter, Image, MipFilter, Sampler, Wrap};
+use durer::scene::{Image, MipFilter, Sampler, TextureFilter, Wrap};
 use durer::shade::texture::{PreparedTexture, Step, Usage, replay, weights};
 use durer::trace::{PseudocodeLine, Recorder};
 
-const FILTERS: [Filter; 2] = [Filter::Nearest, Filter::Linear];
+const FILTERS: [TextureFilter; 2] = [TextureFilter::Nearest, TextureFilter::Linear];
 const MIPS: [MipFilter; 3] = [MipFilter::None, MipFilter::Nearest, MipFilter::Linear];
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge];
 
@@ -75,7 +75,7 @@ fn fifths() -> Image {
 fn the_worked_example_of_the_page() {
     let image = fifths();
     let sample = |wrap| {
-        let (mag, min, mip) = (Filter::Linear, Filter::Linear, MipFilter::None);
+        let (mag, min, mip) = (TextureFilter::Linear, TextureFilter::Linear, MipFilter::None);
         let sampler = Sampler { mag, min, mip, wrap_u: wrap, wrap_v: wrap };
         let texture = PreparedTexture::new(&image, sampler, Usage::Data);
         let mut steps = Recorder::default();
@@ -106,7 +106,7 @@ fn the_worked_example_of_the_page() {
 #[test]
 fn a_pixel_of_six_texels_is_between_levels_two_and_three() {
     let image = noise(64, 64);
-    let (mip, filter) = (MipFilter::Linear, Filter::Linear);
+    let (mip, filter) = (MipFilter::Linear, TextureFilter::Linear);
     let sampler = Sampler { mag: filter, min: filter, mip, ..Sampler::default() };
     let texture = PreparedTexture::new(&image, sampler, Usage::Data);
     let mut steps = Recorder::default();

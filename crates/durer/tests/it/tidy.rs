@@ -220,6 +220,54 @@ fn names_are_the_usual_words() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Adds the types that a caller reaches through a file's public modules: those that it defines, and those that it takes
+/// from its private modules.
+fn public_types(path: &Path, folder: &Path, found: &mut BTreeMap<String, Vec<PathBuf>>) {
+    let text = code(path);
+    let mut add = |name: &str| found.entry(name.to_owned()).or_default().push(path.to_owned());
+    let word = |rest: &str| -> String {
+        rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    };
+    for kind in ["struct", "enum", "trait", "type"] {
+        let start = format!("pub {kind} ");
+        text.lines().filter_map(|l| l.strip_prefix(&start)).for_each(|rest| add(&word(rest)));
+    }
+    let lines = |start: &'static str| text.lines().filter_map(move |l| l.strip_prefix(start));
+    let private: Vec<String> = lines("mod ").map(word).collect();
+    for (i, _) in text.match_indices("\npub use ") {
+        let (_, rest) = text[i..].split_once("use ").unwrap_or_default();
+        let (from, names) =
+            rest.split(';').next().and_then(|u| u.split_once("::")).unwrap_or_default();
+        if private.iter().any(|name| name == from) {
+            let names = names.split(|c: char| !c.is_alphanumeric() && c != '_');
+            let is_type = |name: &&str| {
+                name.starts_with(char::is_uppercase) && name.contains(char::is_lowercase)
+            };
+            names.filter(is_type).for_each(&mut add);
+        }
+    }
+    for name in lines("pub mod ").map(word) {
+        let inner = folder.join(&name);
+        let file = inner.with_extension("rs");
+        let file = if file.exists() { file } else { inner.join("mod.rs") };
+        if file.exists() {
+            public_types(&file, &inner, found);
+        }
+    }
+}
+
+/// Checks that no two public types have one name, but for those that every algorithm has.
+#[test]
+fn public_types_have_names_of_their_own() {
+    const OF_ALGORITHMS: [&str; 2] = ["Options", "Step"];
+    let (root, _) = library();
+    let mut found = BTreeMap::new();
+    public_types(&root.join("lib.rs"), &root, &mut found);
+    assert!(found.len() > 300, "{} types", found.len());
+    found.retain(|name, places| places.len() > 1 && !OF_ALGORITHMS.contains(&&name[..]));
+    assert!(found.is_empty(), "{found:#?}");
+}
+
 /// Files and folders by their paths as modules.
 type Modules = BTreeMap<Vec<String>, PathBuf>;
 

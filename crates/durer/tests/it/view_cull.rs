@@ -1,6 +1,6 @@
 //! Culling by bounding volumes, normals, facing, topology of meshes.
 
-use durer::clip::outcode::DepthRange;
+use durer::clip::outcode::ClipDepths;
 use durer::math::{DMat4, DVec2, DVec3, Plane, Rect, Vec3};
 use durer::scene::{Aabb, BoundingSphere, Camera, Mesh, Projection, Topology};
 use durer::view::cull::*;
@@ -48,7 +48,7 @@ proptest! {
         extra in prop::collection::vec((point(3.0), point(2.0)), 0..3),
     ) {
         let Some(matrix) = frustum(eye, target) else { return Ok(()) };
-        let mut planes = ConvexVolume::frustum(&matrix, DepthRange::NegativeOneToOne).planes().to_vec();
+        let mut planes = ConvexVolume::frustum(&matrix, ClipDepths::NegativeOneToOne).planes().to_vec();
         planes.extend(extra.iter().map(|&(p, n)| Plane::through(p, n)));
         let volume = ConvexVolume::new(planes.clone());
         let b = a + (b - a) * scale;
@@ -100,7 +100,7 @@ proptest! {
 
 #[test]
 fn verdicts_are_not_always_crossing() {
-    let volume = ConvexVolume::frustum(&DMat4::IDENTITY, DepthRange::NegativeOneToOne);
+    let volume = ConvexVolume::frustum(&DMat4::IDENTITY, ClipDepths::NegativeOneToOne);
     let cube = |center: f64, half: f64| Aabb {
         min: DVec3::splat(center - half),
         max: DVec3::splat(center + half),
@@ -129,10 +129,13 @@ fn faces_are_seen_from_their_side() {
     let t = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let normal = triangle_area(t);
     let seen = |z: f64| face_from_point(normal, t[0], DVec3::new(5.0, -3.0, z));
-    assert_eq!([seen(1.0), seen(-1.0), seen(0.0)], [Face::Front, Face::Back, Face::Edge]);
-    assert_eq!(face_along(normal, DVec3::NEG_Z), Face::Front);
-    assert_eq!(face_along(normal, DVec3::Z), Face::Back);
-    assert_eq!(face_along(DVec3::ZERO, DVec3::Z), Face::Edge);
+    assert_eq!(
+        [seen(1.0), seen(-1.0), seen(0.0)],
+        [FaceSide::Front, FaceSide::Back, FaceSide::Edge]
+    );
+    assert_eq!(face_along(normal, DVec3::NEG_Z), FaceSide::Front);
+    assert_eq!(face_along(normal, DVec3::Z), FaceSide::Back);
+    assert_eq!(face_along(DVec3::ZERO, DVec3::Z), FaceSide::Edge);
 }
 
 /// Returns a cube of side 2 around `center`, its vertices not shared, as in STL.

@@ -6,7 +6,7 @@ use durer::math::{DMat4, DVec2, DVec3, Rect};
 use durer::scene::{Instance, Scene};
 use durer::target::NO_ITEM;
 use durer::trace::Recorder;
-use durer::view::pick::{Area, objects, pick, pick_traced, replay};
+use durer::view::pick::{PickArea, objects, pick, pick_traced, replay};
 
 fn center(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
@@ -21,9 +21,9 @@ fn the_first_triangle_under_a_pixel_is_the_visible_one() {
         let framebuffer = p.by_z_buffer();
         let items = framebuffer.item.expect("items");
         for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
-            let hits = pick(&scene, &p.view, Area::Point(center(x, y)));
+            let hits = pick(&scene, &p.view, PickArea::Point(center(x, y)));
             if x % 9 == 0 {
-                let (at, mut steps) = (Area::Point(center(x, y)), Recorder::default());
+                let (at, mut steps) = (PickArea::Point(center(x, y)), Recorder::default());
                 assert_eq!(pick_traced(&scene, &p.view, at, &mut steps), hits);
                 assert_eq!(replay(steps.steps()), hits);
             }
@@ -48,7 +48,7 @@ fn some_point_hits(scene: &Scene, p: &Prepared<'_>, rect: &Rect, item: u32) -> b
     (0..=steps).flat_map(|j| (0..=steps).map(move |i| (i, j))).any(|(i, j)| {
         let at =
             rect.min() + rect.size() * DVec2::new(f64::from(i), f64::from(j)) / f64::from(steps);
-        pick(scene, &p.view, Area::Point(at)).iter().any(|h| h.item == item)
+        pick(scene, &p.view, PickArea::Point(at)).iter().any(|h| h.item == item)
     })
 }
 
@@ -63,10 +63,10 @@ fn rectangles_hold_what_their_points_hold() {
             let min = DVec2::new(number() * 50.0, number() * 50.0);
             let max = min + DVec2::new(0.5 + number() * 20.0, 0.5 + number() * 20.0);
             let rect = Rect::new(min, max).expect("rectangle");
-            let hits = pick(&scene, &p.view, Area::Rect(rect));
+            let hits = pick(&scene, &p.view, PickArea::Rect(rect));
             for _ in 0..60 {
                 let at = min + (max - min) * DVec2::new(number(), number());
-                for under in pick(&scene, &p.view, Area::Point(at)) {
+                for under in pick(&scene, &p.view, PickArea::Point(at)) {
                     let hit = hits.iter().find(|h| h.item == under.item);
                     assert!(hit.is_some_and(|h| h.depth <= under.depth + 1e-9), "{seed} {at}");
                 }
@@ -85,15 +85,15 @@ fn small_and_empty_rectangles() {
     let scene = three_beams();
     let p = Prepared::new(&scene, 60, 60);
     let everything = Rect::new(DVec2::splat(-100.0), DVec2::splat(200.0)).expect("rectangle");
-    assert_eq!(pick(&scene, &p.view, Area::Rect(everything)).len(), 6);
+    assert_eq!(pick(&scene, &p.view, PickArea::Rect(everything)).len(), 6);
     let line = Rect::new(DVec2::ZERO, DVec2::new(60.0, 0.0)).expect("rectangle");
-    assert!(pick(&scene, &p.view, Area::Rect(line)).is_empty());
-    let one = pick(&scene, &p.view, Area::Rect(everything))[0];
+    assert!(pick(&scene, &p.view, PickArea::Rect(line)).is_empty());
+    let one = pick(&scene, &p.view, PickArea::Rect(everything))[0];
     let s = p.view.screen_from_world() * one.position.extend(1.0);
     let at = DVec2::new(s.x, s.y) / s.w;
     let small = Rect::new(at - 0.5, at + 0.5).expect("rectangle");
     assert!(some_point_hits(&scene, &p, &small, one.item));
-    assert!(pick(&scene, &p.view, Area::Point(DVec2::NAN)).is_empty());
+    assert!(pick(&scene, &p.view, PickArea::Point(DVec2::NAN)).is_empty());
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn objects_come_nearest_first() {
     scene.instances = vec![place(-2.0), place(0.5), place(-1.0), place(100.0)];
     let p = Prepared::new(&scene, 60, 60);
     let middle = Rect::new(DVec2::splat(0.0), DVec2::splat(60.0)).expect("rectangle");
-    let hits = pick(&scene, &p.view, Area::Rect(middle));
+    let hits = pick(&scene, &p.view, PickArea::Rect(middle));
     let found: Vec<_> = objects(&hits).iter().map(|o| (o.instance, o.primitives)).collect();
     assert_eq!(found, [(1, 1), (2, 1), (0, 1)]);
     assert_eq!(hits.iter().map(|h| h.item).collect::<Vec<_>>(), [1, 2, 0]);
@@ -125,6 +125,6 @@ fn nothing_before_the_near_plane_or_beyond_the_far_plane_is_picked() {
     };
     scene.instances = vec![at(0.5 * camera.near), at(2.0), at(19.0), at(25.0), at(-1.0)];
     let p = Prepared::new(&scene, 60, 60);
-    let hits = pick(&scene, &p.view, Area::Point(DVec2::splat(30.0)));
+    let hits = pick(&scene, &p.view, PickArea::Point(DVec2::splat(30.0)));
     assert_eq!(hits.iter().map(|h| h.item).collect::<Vec<_>>(), [1, 2]);
 }

@@ -6,7 +6,7 @@ use durer::pipeline::{RenderOptions, Samples, render};
 use durer::scene::{Camera, Instance, Material, Mesh, Part, Projection, Scene, ShadingModel};
 use durer::target::{Framebuffer, Pixels};
 use durer::trace::{NoTrace, Recorder};
-use durer::view::warp::{HOLE, Options, Source, Step, Warped, warp};
+use durer::view::warp::{DepthPicture, HOLE, Options, Step, Warped, warp};
 
 const SIDE: u32 = 120;
 
@@ -49,8 +49,8 @@ fn picture(camera: Camera) -> Framebuffer {
     render(&scene(), &options).expect("picture").0
 }
 
-fn source(picture: &Framebuffer, camera: Camera) -> Source<'_> {
-    Source { color: &picture.color, depth: picture.depth.as_ref().expect("depth"), camera }
+fn source(picture: &Framebuffer, camera: Camera) -> DepthPicture<'_> {
+    DepthPicture { color: &picture.color, depth: picture.depth.as_ref().expect("depth"), camera }
 }
 
 fn warped(pictures: &[(Framebuffer, Camera)], to: &Camera) -> Warped {
@@ -133,7 +133,7 @@ fn square(mixed: [u8; 4]) -> (Pixels<[u8; 4]>, Pixels<f32>) {
 fn nothing_is_no_wall() {
     let (color, depth) = square([200, 0, 0, 255]);
     let from = camera(DVec3::new(0.0, 0.0, 5.0), false);
-    let source = Source { color: &color, depth: &depth, camera: from };
+    let source = DepthPicture { color: &color, depth: &depth, camera: from };
     let to = DVec3::new(0.8, 0.0, 0.0);
     let to = Camera { target: to, ..camera(to + DVec3::new(0.0, 0.0, 5.0), false) };
     let found = warp(&[source], &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
@@ -147,7 +147,7 @@ fn nothing_is_no_wall() {
     // Pixels without a surface in one picture may have one in another.
     let far = Pixels::new(SIDE, SIDE, 0.9);
     let green = Pixels::new(SIDE, SIDE, [0, 200, 0, 255]);
-    let second = Source { color: &green, depth: &far, camera: to };
+    let second = DepthPicture { color: &green, depth: &far, camera: to };
     let both = [source, second];
     let found = warp(&both, &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
     assert_eq!(found.framebuffer.color.get(2, 2), Some([0, 200, 0, 255]));
@@ -158,7 +158,7 @@ fn nothing_is_no_wall() {
 fn smoothed_outlines_leave_no_ghosts() {
     let (color, depth) = square([228, 128, 128, 255]);
     let from = camera(DVec3::new(0.0, 0.0, 5.0), false);
-    let source = Source { color: &color, depth: &depth, camera: from };
+    let source = DepthPicture { color: &color, depth: &depth, camera: from };
     for x in [0.0, 0.7, -0.4] {
         let to = camera(DVec3::new(x, 0.0, 5.0), false);
         let found =
@@ -197,10 +197,10 @@ fn strange_depths_and_sizes_do_no_harm() {
     let depth = Pixels::from_data(8, 8, strange.repeat(8)).expect("size");
     let to = camera(DVec3::new(0.0, 0.0, 3.2), false);
     let options = Options::default();
-    let sources = [Source { color: &color, depth: &depth, camera: from }];
+    let sources = [DepthPicture { color: &color, depth: &depth, camera: from }];
     assert!(warp(&sources, &to, [9, 5], &options, &mut NoTrace).is_ok());
     let small = Pixels::new(7, 8, 0.5);
-    let sources = [Source { depth: &small, ..sources[0] }];
+    let sources = [DepthPicture { depth: &small, ..sources[0] }];
     assert!(warp(&sources, &to, [9, 5], &options, &mut NoTrace).is_err());
     assert!(warp(&[], &to, [0, 5], &options, &mut NoTrace).is_err());
 }

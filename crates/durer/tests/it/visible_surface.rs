@@ -7,8 +7,8 @@ use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::surface::Filter;
 use durer::visibility::surface::SurfaceInput;
+use durer::visibility::surface::TriangleFilter;
 use durer::visibility::surface::{Options, SurfaceMethod, render_with};
 use durer::visibility::surface::{scan_line_z, spanning_scan_line};
 
@@ -83,7 +83,7 @@ fn amid(width: u32, height: u32) -> View {
     View::new(camera, width, height).expect("view")
 }
 
-const FILTER: Filter = Filter::new(durer::pipeline::Cull::None, 128);
+const FILTER: TriangleFilter = TriangleFilter::new(durer::pipeline::Cull::None, 128);
 
 fn planes(view: &View) -> Framebuffer {
     Framebuffer::new(view.width(), view.height()).with_depth().with_items().with_normals()

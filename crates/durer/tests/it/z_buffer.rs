@@ -8,12 +8,12 @@ use durer::scene::{Camera, Mesh, Projection, Scene};
 use durer::target::NO_ITEM;
 use durer::view::View;
 use durer::view::window::PixelRect;
-use durer::visibility::surface::Filter;
 use durer::visibility::surface::SurfaceInput;
+use durer::visibility::surface::TriangleFilter;
 
 /// Returns the nearest item and its depth at each pixel's centre.
 fn by_the_book(scene: &Scene, view: &View) -> (Vec<u32>, Vec<f32>) {
-    let filter = Filter::new(Cull::None, 0);
+    let filter = TriangleFilter::new(Cull::None, 0);
     let input = SurfaceInput::new(scene, view, filter).expect("triangles");
     let (width, height) = (view.width(), view.height());
     let options = Options { clip: PixelRect::of_size(width, height).expect("size") };

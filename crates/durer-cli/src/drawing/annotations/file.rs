@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::options::drawing::thread;
 use crate::toml_words::fault;
-use durer::annotate::{Along, Place, Request, Side, Thread, What};
+use durer::annotate::{Along, FeaturePlace, Request, Thread, ViewSide, What};
 use durer::math::DVec3;
 use std::path::Path;
 use toml::Spanned;
@@ -150,7 +150,7 @@ impl Entry<'_> {
         }
     }
 
-    fn place(&self, name: &str) -> Result<Option<Place>, Wrong> {
+    fn place(&self, name: &str) -> Result<Option<FeaturePlace>, Wrong> {
         let Some(value) = self.get(name) else { return Ok(None) };
         let number = |value: &Spanned<DeValue>| -> Option<f64> {
             let text = match value.get_ref() {
@@ -161,9 +161,9 @@ impl Entry<'_> {
             text.replace('_', "").parse().ok().filter(|n: &f64| n.is_finite())
         };
         let found = match value.get_ref() {
-            DeValue::String(text) => Some(Place::Feature(text.clone().into_owned())),
+            DeValue::String(text) => Some(FeaturePlace::Feature(text.clone().into_owned())),
             DeValue::Array(array) => match &array.iter().map(number).collect::<Vec<_>>()[..] {
-                &[Some(x), Some(y), Some(z)] => Some(Place::Point(DVec3::new(x, y, z))),
+                &[Some(x), Some(y), Some(z)] => Some(FeaturePlace::Point(DVec3::new(x, y, z))),
                 _ => None,
             },
             _ => None,
@@ -184,13 +184,13 @@ impl Entry<'_> {
         }
     }
 
-    fn side(&self) -> Result<Option<Side>, Wrong> {
+    fn side(&self) -> Result<Option<ViewSide>, Wrong> {
         let side = match self.text("side")?.as_deref() {
             None => return Ok(None),
-            Some("above") => Side::Above,
-            Some("below") => Side::Below,
-            Some("left") => Side::Left,
-            Some("right") => Side::Right,
+            Some("above") => ViewSide::Above,
+            Some("below") => ViewSide::Below,
+            Some("left") => ViewSide::Left,
+            Some("right") => ViewSide::Right,
             Some(other) => {
                 let what = format!("side `{other}`: there are above, below, left, right");
                 return Err((self.at("side"), what));
@@ -210,10 +210,10 @@ mod tests {
                     'above'\n[[thread]]\nname = 'bolt'\nsize = 'M8'\n[[dimension]]\nkind = 'note'\nat = 'boss \
                     1'\ntext = 'ground'\nview = 'top'";
         let listed = parse(text).expect("file");
-        let from = Place::Point(DVec3::new(0.0, 1.5, -20.0));
-        let to = Place::Feature("hole 1".to_owned());
+        let from = FeaturePlace::Point(DVec3::new(0.0, 1.5, -20.0));
+        let to = FeaturePlace::Feature("hole 1".to_owned());
         assert_eq!(listed.dimensions[0].what, What::Linear { from, to, along: Along::X });
-        assert_eq!(listed.dimensions[0].side, Some(Side::Above));
+        assert_eq!(listed.dimensions[0].side, Some(ViewSide::Above));
         assert_eq!(listed.dimensions[1].view.as_deref(), Some("top"));
         assert_eq!(listed.threads[0].size.as_ref().map(|s| s.pitch), Some(1.25));
     }

@@ -4,7 +4,7 @@ mod file;
 
 use crate::failure::Failure;
 use crate::options::drawing::{AnnotationArgs, Dimensioned};
-use durer::annotate::{self, Annotations, Feature, Shown};
+use durer::annotate::{self, Annotations, RoundFeature, Shown};
 use durer::paper::LaidOut;
 use durer::scene::Scene;
 use durer::target::drawing::Drawing;
@@ -21,7 +21,7 @@ pub fn parse(text: &str) -> Result<(), String> {
 /// The annotations requested, and the round parts of the model.
 pub struct Annotated {
     annotations: Annotations,
-    pub features: Vec<Feature>,
+    pub features: Vec<RoundFeature>,
 }
 
 impl Annotated {

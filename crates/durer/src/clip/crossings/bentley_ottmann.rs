@@ -51,7 +51,7 @@ pub const INFO: Info = Info {
 
 /// Neighbours that are tested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum Neighbours {
     /// Those below and above a point at which segments only end.
     Around,
     /// The lowest segment at the point and the one below it.
@@ -91,7 +91,7 @@ pub enum Step {
     /// Two neighbours are tested.
     Test {
         /// Place of the neighbours.
-        place: Place,
+        place: Neighbours,
         /// The two, the lower one first.
         pair: [u32; 2],
         /// Point after the event where they meet.
@@ -109,9 +109,9 @@ impl PseudocodeLine for Step {
             Self::Report(_) => 5,
             Self::Status { .. } => 7,
             Self::Test { is_new: true, .. } => 12,
-            Self::Test { place: Place::Around, .. } => 8,
-            Self::Test { place: Place::Below, .. } => 9,
-            Self::Test { place: Place::Above, .. } => 10,
+            Self::Test { place: Neighbours::Around, .. } => 8,
+            Self::Test { place: Neighbours::Below, .. } => 9,
+            Self::Test { place: Neighbours::Above, .. } => 10,
         }
     }
 }
@@ -210,7 +210,7 @@ impl Sweep {
         }
         t.step(|| Step::Status { order: self.order() });
         if on.is_empty() {
-            self.test(Place::Around, [below, above], at, t);
+            self.test(Neighbours::Around, [below, above], at, t);
             return;
         }
         let lowest = match below {
@@ -221,8 +221,8 @@ impl Sweep {
             Some(above) => self.status.below(above),
             None => self.status.last(),
         };
-        self.test(Place::Below, [below, lowest], at, t);
-        self.test(Place::Above, [highest, above], at, t);
+        self.test(Neighbours::Below, [below, lowest], at, t);
+        self.test(Neighbours::Above, [highest, above], at, t);
     }
 
     /// Returns the segments of the status from below to above.
@@ -235,7 +235,7 @@ impl Sweep {
     /// Puts the point where two neighbours meet into the queue, if it is still to come.
     fn test(
         &mut self,
-        place: Place,
+        place: Neighbours,
         pair: [Option<usize>; 2],
         at: &Point,
         t: &mut impl Tracer<Step>,

@@ -9,7 +9,7 @@
 
 use super::border::{Canonical, bit};
 use super::passage::{Bounds, clip_convex, finish};
-use super::{ClipBox, HalfPlane, Relation, Segment};
+use super::{ClipBox, HalfPlane, HalfSpaceRelation, Segment};
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, DVec3, Rect};
@@ -145,7 +145,8 @@ fn report<const N: usize, P>(
             let at = window.borders[axis][upper];
             let inwards = if upper == 0 { 1.0 } else { -1.0 };
             let values = [line.p, line.q].map(|p| inwards * (p[axis] - at));
-            let relation = Relation::of(outside.map(|code| !code.contains(bit(axis, upper))));
+            let relation =
+                HalfSpaceRelation::of(outside.map(|code| !code.contains(bit(axis, upper))));
             bounds.step(line, border, relation, values)
         });
     }

@@ -35,7 +35,7 @@ pub mod sobkow_pospisil_yang;
 pub use border::{ClipBox, End};
 pub(crate) use convex::Edge;
 pub use convex::{ConvexPolygon, HalfPlane, HalfSpace};
-pub use passage::Relation;
+pub use passage::HalfSpaceRelation;
 
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;

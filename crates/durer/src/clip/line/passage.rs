@@ -18,7 +18,7 @@ pub enum Step<P> {
         border: usize,
         /// Relation of the segment to it; [`Relation::Entering`] raises the lower bound of the
         /// parameter, [`Relation::Leaving`] lowers the upper.
-        relation: Relation,
+        relation: HalfSpaceRelation,
         /// Numbers computed for the border.
         numbers: Numbers,
     },
@@ -41,10 +41,10 @@ impl<P> PseudocodeLine for Step<P> {
     /// Returns the line of the pseudocode that runs, counted from 1; it is the same for all methods of this kind.
     fn line(&self) -> usize {
         match self {
-            Self::Border { relation: Relation::Inside, .. } => 3,
-            Self::Border { relation: Relation::Entering, .. } => 4,
-            Self::Border { relation: Relation::Leaving, .. } => 5,
-            Self::Border { relation: Relation::Outside, .. } => 6,
+            Self::Border { relation: HalfSpaceRelation::Inside, .. } => 3,
+            Self::Border { relation: HalfSpaceRelation::Entering, .. } => 4,
+            Self::Border { relation: HalfSpaceRelation::Leaving, .. } => 5,
+            Self::Border { relation: HalfSpaceRelation::Outside, .. } => 6,
             Self::Rejected => 7,
             Self::Cut { end: End::Start, .. } => 8,
             Self::Cut { end: End::End, .. } => 9,
@@ -100,7 +100,7 @@ impl Bounds {
         &mut self,
         line: &Canonical<N>,
         border: usize,
-        relation: Relation,
+        relation: HalfSpaceRelation,
         values: [f64; 2],
     ) -> Step<P> {
         let [start, end] = if line.swapped { [values[1], values[0]] } else { values };
@@ -188,7 +188,7 @@ pub(super) fn finish<const N: usize, P: From<[f64; N]>>(
 
 /// Relation of a segment to one half space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Relation {
+pub enum HalfSpaceRelation {
     /// Both ends inside: nothing to do.
     Inside,
     /// Both ends outside: the segment is rejected.
@@ -199,7 +199,7 @@ pub enum Relation {
     Leaving,
 }
 
-impl Relation {
+impl HalfSpaceRelation {
     /// Returns the relation of the segment in the other direction if `swapped`.
     fn reversed_if(self, swapped: bool) -> Self {
         match self {
@@ -232,7 +232,7 @@ struct Passage {
 fn passage<const N: usize, H: HalfSpace<N>>(
     spaces: &[H],
     line: &Canonical<N>,
-    mut report: impl FnMut(usize, Relation),
+    mut report: impl FnMut(usize, HalfSpaceRelation),
 ) -> Option<Passage> {
     let mut passage = Passage::default();
     for (i, space) in spaces.iter().enumerate() {
@@ -240,15 +240,15 @@ fn passage<const N: usize, H: HalfSpace<N>>(
         report(i, relation);
         // If several borders are crossed at the same point, the first in the list is reported.
         match relation {
-            Relation::Inside => {}
-            Relation::Outside => return None,
-            Relation::Entering => {
+            HalfSpaceRelation::Inside => {}
+            HalfSpaceRelation::Outside => return None,
+            HalfSpaceRelation::Entering => {
                 let later = |&e: &usize| crossing_order(&spaces[e], space, line) == Ordering::Less;
                 if passage.entering.is_none_or(|e| later(&e)) {
                     passage.entering = Some(i);
                 }
             }
-            Relation::Leaving => {
+            HalfSpaceRelation::Leaving => {
                 let sooner =
                     |&l: &usize| crossing_order(&spaces[l], space, line) == Ordering::Greater;
                 if passage.leaving.is_none_or(|l| sooner(&l)) {
@@ -264,8 +264,8 @@ fn passage<const N: usize, H: HalfSpace<N>>(
     (!missed).then_some(passage)
 }
 
-fn relate<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> Relation {
-    Relation::of([line.p, line.q].map(|p| space.sign(p) != Ordering::Less))
+fn relate<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> HalfSpaceRelation {
+    HalfSpaceRelation::of([line.p, line.q].map(|p| space.sign(p) != Ordering::Less))
 }
 
 /// Returns the exact order along the segment of its crossings with two borders, both of which it

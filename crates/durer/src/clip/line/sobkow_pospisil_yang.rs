@@ -51,15 +51,15 @@ pub enum Case {
     /// The ends move into the window, the start first.
     Cut {
         /// Way of the start.
-        start: Way,
+        start: EndWay,
         /// Way of the end.
-        end: Way,
+        end: EndWay,
     },
 }
 
 /// Way of one end into the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Way {
+pub struct EndWay {
     /// Borders to cut at: none for an end that stays, two for one at a corner. The left or right one is cut first, the
     /// other one only if that cut is beyond it.
     pub borders: Outcode,
@@ -70,7 +70,7 @@ pub struct Way {
 /// The cases by line code, 16 times the start's outcode plus the end's. Codes with both bits of an axis do not occur.
 ///
 /// ```
-/// use durer::clip::line::sobkow_pospisil_yang::{CASES, Case, Way};
+/// use durer::clip::line::sobkow_pospisil_yang::{CASES, Case, EndWay};
 /// use durer::clip::outcode::Outcode;
 ///
 /// // From the left over the top: the cut at the left border must not be above the window.
@@ -102,8 +102,8 @@ const fn case(start: u8, end: u8) -> Case {
     // nothing can be missed.
     let misses = if start == 0 { 0 } else { end };
     Case::Cut {
-        start: Way { borders: Outcode(start), misses: Outcode(misses) },
-        end: Way { borders: Outcode(end), misses: Outcode::INSIDE },
+        start: EndWay { borders: Outcode(start), misses: Outcode(misses) },
+        end: EndWay { borders: Outcode(end), misses: Outcode::INSIDE },
     }
 }
 
@@ -221,7 +221,13 @@ struct Moves {
 
 impl Moves {
     /// Moves an end along its way; `None` if a cut shows that the window is missed.
-    fn along(&self, end: End, from: DVec2, way: Way, t: &mut impl Tracer<Step>) -> Option<DVec2> {
+    fn along(
+        &self,
+        end: End,
+        from: DVec2,
+        way: EndWay,
+        t: &mut impl Tracer<Step>,
+    ) -> Option<DVec2> {
         let mut point = from;
         let (mut todo, mut beyond) = (way.borders, way.borders);
         while !beyond.is_inside() {

@@ -2,7 +2,7 @@
 
 use super::mean_value::MeanValues;
 use super::values::{Values, Zm, between, mix};
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::polygon::Operand;
 use crate::clip::polygon::overlay::Output;
 use crate::clip::polygon::{Shapes, signed_area};
@@ -107,15 +107,15 @@ impl Area {
     }
 
     /// Returns the clipped area, with the sources of new vertices as far as they are known.
-    pub(crate) fn cut(&self, shapes: Shapes, sources: &[Source]) -> Self {
+    pub(crate) fn cut(&self, shapes: Shapes, sources: &[VertexSource]) -> Self {
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
         }
         let own = Values { shapes: &self.shapes, zm: &self.zm };
         let values = shapes.points().iter().zip(sources).map(|(&p, source)| match *source {
-            Source::Vertex(i) => self.zm.get(i).copied(),
-            Source::Cut { from, to, .. } => own.along([from, to], p),
-            Source::Corner => None,
+            VertexSource::Vertex(i) => self.zm.get(i).copied(),
+            VertexSource::Cut { from, to, .. } => own.along([from, to], p),
+            VertexSource::Corner => None,
         });
         let values = values.collect();
         self.with_values(shapes, values)
@@ -239,12 +239,12 @@ pub(super) fn pieces(
         let mut points = Points::new(dimensions);
         for &p in run {
             let values = match cut.sources.get(next) {
-                Some(Source::Vertex(i)) => value(*i),
-                Some(Source::Cut { from, to, .. }) if dimensions != Dimensions::Xy => {
+                Some(VertexSource::Vertex(i)) => value(*i),
+                Some(VertexSource::Cut { from, to, .. }) if dimensions != Dimensions::Xy => {
                     let end = |i: usize| (xy.get(i).copied().unwrap_or(p), value(i));
                     between(end(*from), end(*to), p)
                 }
-                Some(Source::Cut { .. } | Source::Corner) | None => [0.0; 2],
+                Some(VertexSource::Cut { .. } | VertexSource::Corner) | None => [0.0; 2],
             };
             points.push(p, values);
             next += 1;

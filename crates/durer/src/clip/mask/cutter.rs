@@ -8,7 +8,7 @@ use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::rectangle;
 use crate::clip::polygon::validity::{Touching, is_valid};
 use crate::clip::polygon::{BooleanOp, PolygonClipper, Shapes, WindingRule, coverage};
-use crate::clip::polyline::{self, Part};
+use crate::clip::polyline::{self, KeptPart};
 use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
@@ -176,7 +176,7 @@ impl<'a> Cutter<'a> {
             }
             (Some(window), _) if inside => rectangle::clip_lines(&window, &points, &ends, true)?,
             _ => {
-                let part = if inside { Part::Inside } else { Part::Outside };
+                let part = if inside { KeptPart::Inside } else { KeptPart::Outside };
                 let options = polyline::Options { part };
                 let mask = self.mask.prepared();
                 polyline::clip_prepared(mask, &points, &ends, &options, &mut NoTrace)?

@@ -1,7 +1,7 @@
 //! Clipping of polylines by algorithms for single segments.
 
 use crate::Result;
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::line::{LineClipper, Segment};
 use crate::clip::polygon::rectangle::ClippedLines;
 use crate::math::{DVec2, Rect};
@@ -64,10 +64,10 @@ fn push(out: &mut ClippedLines, p: DVec2, segment: Segment<DVec2>, end: usize) {
     };
     out.points.push(p);
     out.sources.push(if p == segment.start {
-        Source::Vertex(end - 1)
+        VertexSource::Vertex(end - 1)
     } else if p == segment.end {
-        Source::Vertex(end)
+        VertexSource::Vertex(end)
     } else {
-        Source::Cut { from: end - 1, to: end, t: along }
+        VertexSource::Cut { from: end - 1, to: end, t: along }
     });
 }

@@ -1,6 +1,6 @@
 //! Heights and measures of polygons at places that are not vertices of theirs.
 
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::polygon::Shapes;
 use crate::math::DVec2;
 
@@ -28,9 +28,9 @@ pub struct Values<'a> {
 pub fn between(a: (DVec2, Zm), b: (DVec2, Zm), p: DVec2) -> Zm {
     let order = |p: DVec2, q: DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
     let (a, b) = if order(a.0, b.0).is_le() { (a, b) } else { (b, a) };
-    match Source::on_edge(p, (0, a.0), (1, b.0)) {
-        Source::Vertex(0) => a.1,
-        Source::Cut { t, .. } => mix(a.1, b.1, t),
+    match VertexSource::on_edge(p, (0, a.0), (1, b.0)) {
+        VertexSource::Vertex(0) => a.1,
+        VertexSource::Cut { t, .. } => mix(a.1, b.1, t),
         _ => b.1,
     }
 }

@@ -12,7 +12,7 @@ use super::lists::{CROSSING_AND_TOUCHING, Lists, NOT_SIMPLE, Start, join};
 use super::near::pairs;
 use super::node;
 use super::point::{Place, locate, on_segment};
-use super::steps::{Mark, Step};
+use super::steps::{CrossingMark, Step};
 use super::{BooleanOp, Operand, Shapes, WindingRule};
 use crate::clip::exact;
 use crate::math::{DVec2, Orientation, orient2d};
@@ -223,7 +223,8 @@ impl Linked {
             for v in lists.starts.iter().flat_map(|start| lists.ring(start.vertex)) {
                 t.step(|| {
                     let vertex = &lists.vertices[v];
-                    let mark = if vertex.enters { Mark::Entering } else { Mark::Leaving };
+                    let mark =
+                        if vertex.enters { CrossingMark::Entering } else { CrossingMark::Leaving };
                     Step::Listed { list, at: vertex.at, mark: vertex.twin.map(|_| mark) }
                 });
             }

@@ -17,7 +17,7 @@ use crate::info::{Class, Info, Occluder};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-pub use super::steps::{Mark, Options, Step, replay};
+pub use super::steps::{CrossingMark, Options, Step, replay};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {

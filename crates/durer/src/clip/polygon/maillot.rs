@@ -72,7 +72,7 @@ impl std::fmt::Display for Code {
 
 /// Reason for which a corner of the window is emitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Turn {
+pub enum CornerReason {
     /// The edge ends in the corner's region.
     Basic,
     /// The edge goes from beside a border to beside another one.
@@ -102,7 +102,7 @@ pub enum Step {
         /// The corner.
         corner: DVec2,
         /// Reason for it.
-        turn: Turn,
+        turn: CornerReason,
     },
 }
 
@@ -121,10 +121,10 @@ impl PseudocodeLine for Step {
         match self {
             Self::Edge { .. } => 2,
             Self::Point(_) => 4,
-            Self::Turn { turn: Turn::BorderToBorder, .. } => 6,
-            Self::Turn { turn: Turn::BorderToCorner, .. } => 7,
-            Self::Turn { turn: Turn::CornerToCorner, .. } => 8,
-            Self::Turn { turn: Turn::Basic, .. } => 9,
+            Self::Turn { turn: CornerReason::BorderToBorder, .. } => 6,
+            Self::Turn { turn: CornerReason::BorderToCorner, .. } => 7,
+            Self::Turn { turn: CornerReason::CornerToCorner, .. } => 8,
+            Self::Turn { turn: CornerReason::Basic, .. } => 9,
         }
     }
 }
@@ -181,7 +181,7 @@ pub fn clip(window: &Rect, ring: &[DVec2], t: &mut impl Tracer<Step>) -> Result<
             put(Step::Turn { corner: corner(window, borders), turn });
         }
         if end.is_corner {
-            put(Step::Turn { corner: corner(window, end.borders), turn: Turn::Basic });
+            put(Step::Turn { corner: corner(window, end.borders), turn: CornerReason::Basic });
         }
     }
     Ok(with_area(points))
@@ -205,16 +205,19 @@ fn of_y(code: Outcode) -> Outcode {
 }
 
 /// Returns the corner around which an edge outside the window goes before its end; no border is common to its ends.
-fn between(window: &Rect, [(from, start), (to, end)]: [(DVec2, Code); 2]) -> (Outcode, Turn) {
+fn between(
+    window: &Rect,
+    [(from, start), (to, end)]: [(DVec2, Code); 2],
+) -> (Outcode, CornerReason) {
     let (a, b) = (start.borders, end.borders);
     // The corner of a border and of the border across it that a corner's region is beyond.
     let beside = |border: Outcode, corner: Outcode| {
         border | if of_x(border).is_inside() { of_x(corner) } else { of_y(corner) }
     };
     match (start.is_corner, end.is_corner) {
-        (false, false) => (a | b, Turn::BorderToBorder),
-        (false, true) => (beside(a, b), Turn::BorderToCorner),
-        (true, false) => (beside(b, a), Turn::BorderToCorner),
+        (false, false) => (a | b, CornerReason::BorderToBorder),
+        (false, true) => (beside(a, b), CornerReason::BorderToCorner),
+        (true, false) => (beside(b, a), CornerReason::BorderToCorner),
         (true, true) => {
             // Seen along an edge from the left below to the right above, the window is to the right of those that go
             // around its left upper corner; each reflection exchanges the sides.
@@ -222,7 +225,7 @@ fn between(window: &Rect, [(from, start), (to, end)]: [(DVec2, Code); 2]) -> (Ou
             let far = if upwards { Ordering::Less } else { Ordering::Greater };
             let first = exact::side(from, to, window.min()) == far;
             let corner = if first { of_x(a) | of_y(b) } else { of_x(b) | of_y(a) };
-            (corner, Turn::CornerToCorner)
+            (corner, CornerReason::CornerToCorner)
         }
     }
 }

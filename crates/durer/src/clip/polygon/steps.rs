@@ -11,7 +11,7 @@ pub struct Options {}
 
 /// Direction of a list at a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Mark {
+pub enum CrossingMark {
     /// Into the other polygon.
     Entering,
     /// Out of it.
@@ -28,7 +28,7 @@ pub enum Step {
         /// Position of the point.
         at: DVec2,
         /// Direction of the list at a crossing.
-        mark: Option<Mark>,
+        mark: Option<CrossingMark>,
     },
     /// A ring begins at a crossing of the subject.
     Start {

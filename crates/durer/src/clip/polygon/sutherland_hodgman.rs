@@ -53,14 +53,14 @@ pub const INFO: Info = Info {
 };
 
 /// Vertex with a position that can be mixed with another vertex of an edge.
-pub trait Vertex<const N: usize>: Copy {
+pub trait MixableVertex<const N: usize>: Copy {
     /// Returns the coordinates, in the space of the window.
     fn position(&self) -> [f64; N];
     /// Returns the vertex at `position` on the edge from self (t = 0) to `other` (t = 1).
     fn cut(&self, other: &Self, t: f64, position: [f64; N]) -> Self;
 }
 
-impl Vertex<2> for DVec2 {
+impl MixableVertex<2> for DVec2 {
     fn position(&self) -> [f64; 2] {
         self.to_array()
     }
@@ -70,7 +70,7 @@ impl Vertex<2> for DVec2 {
     }
 }
 
-impl Vertex<3> for DVec3 {
+impl MixableVertex<3> for DVec3 {
     fn position(&self) -> [f64; 3] {
         self.to_array()
     }
@@ -81,7 +81,7 @@ impl Vertex<3> for DVec3 {
 }
 
 /// A vertex with a tuple of K numbers that are interpolated at cuts: colour, measure, texture.
-impl<const K: usize> Vertex<2> for (DVec2, [f64; K]) {
+impl<const K: usize> MixableVertex<2> for (DVec2, [f64; K]) {
     fn position(&self) -> [f64; 2] {
         self.0.to_array()
     }
@@ -93,7 +93,7 @@ impl<const K: usize> Vertex<2> for (DVec2, [f64; K]) {
 }
 
 /// The same in three dimensions.
-impl<const K: usize> Vertex<3> for (DVec3, [f64; K]) {
+impl<const K: usize> MixableVertex<3> for (DVec3, [f64; K]) {
     fn position(&self) -> [f64; 3] {
         self.0.to_array()
     }
@@ -122,7 +122,7 @@ impl<H, V> Stage<H, V> {
     fn take<const N: usize>(&mut self, vertex: V) -> [Option<V>; 2]
     where
         H: HalfSpace<N>,
-        V: Vertex<N>,
+        V: MixableVertex<N>,
     {
         let inside = self.border.sign(vertex.position()) != Ordering::Less;
         let cut = self.previous.and_then(|from| cut(&self.border, from, (vertex, inside)));
@@ -135,7 +135,7 @@ impl<H, V> Stage<H, V> {
     fn close<const N: usize>(&mut self) -> Option<V>
     where
         H: HalfSpace<N>,
-        V: Vertex<N>,
+        V: MixableVertex<N>,
     {
         let (from, to) = self.previous.take().zip(self.first.take())?;
         cut(&self.border, from, to)
@@ -144,7 +144,7 @@ impl<H, V> Stage<H, V> {
 
 /// Returns the cut of an edge whose ends are on different sides of a border; none if one end is on
 /// it.
-fn cut<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+fn cut<const N: usize, H: HalfSpace<N>, V: MixableVertex<N>>(
     border: &H,
     (a, a_in): (V, bool),
     (b, b_in): (V, bool),
@@ -165,7 +165,7 @@ fn cut<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
 }
 
 /// Refuses vertices with coordinates that are not finite.
-fn finite_vertices<const N: usize, V: Vertex<N>>(ring: &[V]) -> Result<()> {
+fn finite_vertices<const N: usize, V: MixableVertex<N>>(ring: &[V]) -> Result<()> {
     let finite = |v: &V| v.position().iter().all(|c| c.is_finite());
     match ring.iter().position(|v| !finite(v)) {
         Some(index) => Err(Error::NonFinite { what: "vertex", index }),
@@ -212,12 +212,12 @@ pub fn replay<V: Copy>(steps: &[Step<V>]) -> Vec<V> {
 ///
 /// ```
 /// use durer::clip::line::HalfPlane;
-/// use durer::clip::polygon::sutherland_hodgman::Pipeline;
+/// use durer::clip::polygon::sutherland_hodgman::Stages;
 /// use durer::math::DVec2;
 /// use durer::trace::NoTrace;
 ///
 /// let right = HalfPlane { normal: DVec2::X, point: DVec2::ZERO };
-/// let mut pipeline = Pipeline::new([right]);
+/// let mut pipeline = Stages::new([right]);
 /// let mut ring = Vec::new();
 /// for v in [DVec2::new(-1.0, 0.0), DVec2::new(1.0, 0.0), DVec2::new(1.0, 2.0)] {
 ///     pipeline.push(v, &mut |v| ring.push(v), &mut NoTrace);
@@ -226,11 +226,11 @@ pub fn replay<V: Copy>(steps: &[Step<V>]) -> Vec<V> {
 /// assert_eq!(ring, [DVec2::new(0., 0.), DVec2::new(1., 0.), DVec2::new(1., 2.), DVec2::new(0., 1.)]);
 /// ```
 #[derive(Debug, Clone)]
-pub struct Pipeline<H, V> {
+pub struct Stages<H, V> {
     stages: Vec<Stage<H, V>>,
 }
 
-impl<H, V> Pipeline<H, V> {
+impl<H, V> Stages<H, V> {
     /// Creates one stage for each border, in this order.
     pub fn new(borders: impl IntoIterator<Item = H>) -> Self {
         Self { stages: borders.into_iter().map(Stage::new).collect() }
@@ -244,7 +244,7 @@ impl<H, V> Pipeline<H, V> {
         t: &mut impl Tracer<Step<V>>,
     ) where
         H: HalfSpace<N>,
-        V: Vertex<N>,
+        V: MixableVertex<N>,
     {
         self.push_at(0, vertex, out, t);
     }
@@ -253,7 +253,7 @@ impl<H, V> Pipeline<H, V> {
     pub fn close<const N: usize>(&mut self, out: &mut impl FnMut(V), t: &mut impl Tracer<Step<V>>)
     where
         H: HalfSpace<N>,
-        V: Vertex<N>,
+        V: MixableVertex<N>,
     {
         for stage in 0..self.stages.len() {
             if let Some(vertex) = self.stages[stage].close() {
@@ -270,7 +270,7 @@ impl<H, V> Pipeline<H, V> {
         t: &mut impl Tracer<Step<V>>,
     ) where
         H: HalfSpace<N>,
-        V: Vertex<N>,
+        V: MixableVertex<N>,
     {
         let Some(current) = self.stages.get_mut(stage) else {
             t.step(|| Step::Leaves { vertex });
@@ -287,7 +287,7 @@ impl<H, V> Pipeline<H, V> {
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
-pub fn clip<V: Vertex<2>>(
+pub fn clip<V: MixableVertex<2>>(
     window: &Rect,
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -299,7 +299,7 @@ pub fn clip<V: Vertex<2>>(
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
-pub fn clip_polygon<V: Vertex<2>>(
+pub fn clip_polygon<V: MixableVertex<2>>(
     window: &ConvexPolygon,
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -366,7 +366,7 @@ fn has_area(ring: &[DVec2]) -> bool {
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
-pub fn clip_box<V: Vertex<3>>(
+pub fn clip_box<V: MixableVertex<3>>(
     window: &ClipBox<3>,
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -378,7 +378,7 @@ pub fn clip_box<V: Vertex<3>>(
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a vertex or plane with a NaN or infinite number.
-pub fn clip_polyhedron<V: Vertex<3>>(
+pub fn clip_polyhedron<V: MixableVertex<3>>(
     window: &[Plane],
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -390,13 +390,13 @@ pub fn clip_polyhedron<V: Vertex<3>>(
     run(window.iter().copied(), ring, t)
 }
 
-fn run<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+fn run<const N: usize, H: HalfSpace<N>, V: MixableVertex<N>>(
     borders: impl IntoIterator<Item = H>,
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
 ) -> Result<Vec<V>> {
     finite_vertices(ring)?;
-    let (mut pipeline, mut out) = (Pipeline::new(borders), Vec::new());
+    let (mut pipeline, mut out) = (Stages::new(borders), Vec::new());
     for &vertex in ring {
         pipeline.push(vertex, &mut |v| out.push(v), t);
     }

@@ -5,8 +5,8 @@
 //! Near are features at a distance of 1.5 standard deviations below the mean of the distances' logarithms, between
 //! neighbours along Hilbert's curve. In addition, all features but the smallest 1 % are at least four cells long.
 
-use super::piece::Body;
-use super::ready::{Feature, runs};
+use super::piece::TileBody;
+use super::ready::{TileFeature, runs};
 use super::{Tile, hilbert};
 use crate::math::{DVec2, Rect};
 use crate::sorting::CompactSort;
@@ -42,14 +42,14 @@ pub enum Reason {
 
 /// Level at which the detail of features is visible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Detail {
+pub struct DetailLevel {
     /// The level, at most [`Tile::MAX_ZOOM`].
     pub zoom: u8,
     /// The property that requires it.
     pub reason: Reason,
 }
 
-impl Detail {
+impl DetailLevel {
     /// Returns the coarsest level whose grid, of `extent` cells per side of a tile, shows the detail of most features;
     /// `None` if there are not two different points.
     ///
@@ -57,22 +57,22 @@ impl Detail {
     ///
     /// ```
     /// use durer::clip::polygon::WindingRule;
-    /// use durer::clip::tiles::{Body, Detail, Feature, Reason};
+    /// use durer::clip::tiles::{TileBody, DetailLevel, TileFeature, Reason};
     /// use durer::math::DVec2;
     ///
     /// // Points that are 1/65536 of the world apart.
-    /// let point = |i: u32| Body::Points(vec![DVec2::new(f64::from(i) / 65536.0, 0.25)]);
+    /// let point = |i: u32| TileBody::Points(vec![DVec2::new(f64::from(i) / 65536.0, 0.25)]);
     /// let features: Vec<Feature> =
-    ///     (0..100).map(|i| Feature { layer: 0, body: point(i), fill: WindingRule::EvenOdd }).collect();
-    /// let detail = Detail::of(&features, 4096).unwrap();
+    ///     (0..100).map(|i| TileFeature { layer: 0, body: point(i), fill: WindingRule::EvenOdd }).collect();
+    /// let detail = DetailLevel::of(&features, 4096).unwrap();
     /// assert_eq!((detail.zoom, detail.reason), (5, Reason::Distances));
     /// ```
-    pub fn of(features: &[Feature], extent: u32) -> Option<Self> {
+    pub fn of(features: &[TileFeature], extent: u32) -> Option<Self> {
         let bounds: Vec<(bool, Rect)> = features
             .iter()
             .filter_map(|f| {
                 let around = Rect::around(f.body.points().iter().copied())?;
-                Some((matches!(f.body, Body::Points(_)), around))
+                Some((matches!(f.body, TileBody::Points(_)), around))
             })
             .collect();
         let wanted = [
@@ -119,18 +119,18 @@ impl Logarithms {
 }
 
 /// Returns the geometric mean of the distances between neighbouring vertices.
-fn between_vertices(features: &[Feature]) -> Option<f64> {
+fn between_vertices(features: &[TileFeature]) -> Option<f64> {
     let mut distances = Logarithms::default();
     let mut add = |run: &[DVec2]| {
         run.windows(2).for_each(|pair| distances.add(pair[0].distance(pair[1])));
     };
     for feature in features {
         match &feature.body {
-            Body::Points(_) => {}
-            Body::Lines { points, ends } => {
+            TileBody::Points(_) => {}
+            TileBody::Lines { points, ends } => {
                 runs(ends).for_each(|run| add(points.get(run).unwrap_or_default()));
             }
-            Body::Areas(shapes) => shapes.rings().for_each(&mut add),
+            TileBody::Areas(shapes) => shapes.rings().for_each(&mut add),
         }
     }
     distances.below(0.0)
@@ -169,16 +169,16 @@ mod tests {
     use super::*;
     use crate::clip::polygon::{Shapes, WindingRule};
 
-    fn feature(body: Body) -> Feature {
-        Feature { layer: 0, body, fill: WindingRule::EvenOdd }
+    fn feature(body: TileBody) -> TileFeature {
+        TileFeature { layer: 0, body, fill: WindingRule::EvenOdd }
     }
 
-    fn square(x: f64, side: f64) -> Feature {
+    fn square(x: f64, side: f64) -> TileFeature {
         let mut shapes = Shapes::new();
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         shapes.push_ring(corners.map(|c| DVec2::new(x, 0.4) + DVec2::from(c) * side));
         shapes.end_polygon();
-        feature(Body::Areas(shapes))
+        feature(TileBody::Areas(shapes))
     }
 
     #[test]
@@ -187,34 +187,34 @@ mod tests {
         let points: Vec<DVec2> = (0..50).map(|i| DVec2::new(f64::from(i) * step, 0.3)).collect();
         let line = |points: Vec<DVec2>| {
             let ends = vec![points.len()];
-            feature(Body::Lines { points, ends })
+            feature(TileBody::Lines { points, ends })
         };
-        let of = |points: Vec<DVec2>| Detail::of(&[line(points)], 4096);
-        assert_eq!(of(points.clone()), Some(Detail { zoom: 6, reason: Reason::Vertices }));
+        let of = |points: Vec<DVec2>| DetailLevel::of(&[line(points)], 4096);
+        assert_eq!(of(points.clone()), Some(DetailLevel { zoom: 6, reason: Reason::Vertices }));
         // Repeated points say nothing, and half the grid needs a level more.
         let twice: Vec<DVec2> = points.iter().flat_map(|p| [*p; 2]).collect();
         assert_eq!(of(twice), of(points.clone()));
-        let coarse = Detail::of(&[line(points)], 2048);
-        assert_eq!(coarse, Some(Detail { zoom: 7, reason: Reason::Vertices }));
+        let coarse = DetailLevel::of(&[line(points)], 2048);
+        assert_eq!(coarse, Some(DetailLevel { zoom: 7, reason: Reason::Vertices }));
     }
 
     #[test]
     fn all_but_few_features_are_visible() {
         let small = 2f64.powi(-20);
-        let mut squares: Vec<Feature> =
+        let mut squares: Vec<TileFeature> =
             (0..200).map(|i| square(f64::from(i) / 200.0, 2f64.powi(-12))).collect();
         squares[7] = square(0.8, small);
-        let without = Detail::of(&squares, 4096).unwrap();
+        let without = DetailLevel::of(&squares, 4096).unwrap();
         assert!(without.zoom < 8, "{without:?}");
         squares[100..110].iter_mut().for_each(|some| *some = square(0.1, small));
-        let with = Detail::of(&squares, 4096);
-        assert_eq!(with, Some(Detail { zoom: 10, reason: Reason::Sizes }));
+        let with = DetailLevel::of(&squares, 4096);
+        assert_eq!(with, Some(DetailLevel { zoom: 10, reason: Reason::Sizes }));
     }
 
     #[test]
     fn one_place_has_no_detail() {
-        let point = || feature(Body::Points(vec![DVec2::splat(0.5)]));
-        assert_eq!(Detail::of(&[], 4096), None);
-        assert_eq!(Detail::of(&[point(), point()], 4096), None);
+        let point = || feature(TileBody::Points(vec![DVec2::splat(0.5)]));
+        assert_eq!(DetailLevel::of(&[], 4096), None);
+        assert_eq!(DetailLevel::of(&[point(), point()], 4096), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Tile;
 use super::options::{Options, cells};
-use super::piece::{Body, Piece, Shape};
+use super::piece::{GridShape, TileBody, TilePiece};
 use super::ready::{Ready, runs};
 use super::walk::Content;
 use crate::Result;
@@ -48,7 +48,7 @@ impl<'a> Level<'a> {
         let side = self.tiny() / self.cells;
         let (mut squares, mut sums) = (Vec::new(), BTreeMap::<(usize, i64, i64), f64>::new());
         for feature in self.features {
-            let Body::Areas(shapes) = &feature.body else { continue };
+            let TileBody::Areas(shapes) = &feature.body else { continue };
             for (polygon, &area) in shapes.polygons().zip(&feature.areas) {
                 let mut full = false;
                 if self.is_tiny(area) {
@@ -128,7 +128,7 @@ pub struct Part<'a> {
     /// Number of worlds by which it is moved to the east.
     shift: f64,
     /// The part in cells; `None` until something is cut off.
-    cut: Option<Body>,
+    cut: Option<TileBody>,
 }
 
 impl Part<'_> {
@@ -145,7 +145,7 @@ impl Part<'_> {
     }
 
     /// Returns the whole feature on the grid, with `origin` as its zero.
-    fn on_grid(&self, origin: I64Vec2) -> Result<Shape> {
+    fn on_grid(&self, origin: I64Vec2) -> Result<GridShape> {
         let ready = self.ready();
         let place = |p: DVec2| DVec2::new(p.x + self.shift, p.y) * self.level.cells;
         let kept = |run: std::ops::Range<usize>| {
@@ -155,16 +155,18 @@ impl Part<'_> {
             here.map(|(&p, _)| place(p))
         };
         let body = match &ready.body {
-            Body::Points(points) => Body::Points(points.iter().copied().map(place).collect()),
-            Body::Lines { ends, .. } => {
+            TileBody::Points(points) => {
+                TileBody::Points(points.iter().copied().map(place).collect())
+            }
+            TileBody::Lines { ends, .. } => {
                 let (mut points, mut new_ends) = (Vec::new(), Vec::new());
                 for run in runs(ends) {
                     points.extend(kept(run));
                     new_ends.push(points.len());
                 }
-                Body::Lines { points, ends: new_ends }
+                TileBody::Lines { points, ends: new_ends }
             }
-            Body::Areas(shapes) => {
+            TileBody::Areas(shapes) => {
                 let mut areas = Shapes::new();
                 for (i, polygon) in shapes.polygons().enumerate() {
                     if !self.level.is_tiny(ready.areas[i]) {
@@ -176,7 +178,7 @@ impl Part<'_> {
                     }
                     areas.end_polygon();
                 }
-                Body::Areas(areas)
+                TileBody::Areas(areas)
             }
         };
         body.snapped(origin, ready.fill)
@@ -190,20 +192,20 @@ impl Part<'_> {
     }
 
     /// Returns the finished piece for its tile.
-    pub fn finished(self, tile: Tile) -> Result<Option<Piece>> {
+    pub fn finished(self, tile: Tile) -> Result<Option<TilePiece>> {
         let side = i64::from(self.level.options.extent);
         let origin = I64Vec2::new(tile.x.into(), tile.y.into()) * side;
         let shape = match &self.cut {
             Some(cut) => cut.snapped(origin, WindingRule::EvenOdd)?,
             None => self.on_grid(origin)?,
         };
-        Ok((!shape.is_empty()).then_some(Piece { feature: self.feature, shape }))
+        Ok((!shape.is_empty()).then_some(TilePiece { feature: self.feature, shape }))
     }
 }
 
 impl Content for Part<'_> {
     fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>> {
-        let part = |cut: Option<Body>| Self { cut, ..*self };
+        let part = |cut: Option<TileBody>| Self { cut, ..*self };
         if let Some(body) = &self.cut {
             let cut = |&tile: &Tile| {
                 Ok(body.clip(&self.level.window(tile)?)?.map(|body| part(Some(body))))
@@ -211,7 +213,7 @@ impl Content for Part<'_> {
             return tiles.iter().map(cut).collect();
         }
         let around = self.around();
-        let mut body: Option<Body> = None;
+        let mut body: Option<TileBody> = None;
         let mut parts = Vec::with_capacity(tiles.len());
         for &tile in tiles {
             let window = self.level.window(tile)?;
@@ -237,7 +239,7 @@ impl Content for Part<'_> {
     }
 
     fn covers(&self, tile: Tile) -> bool {
-        let Some(Body::Areas(shapes)) = &self.cut else { return false };
+        let Some(TileBody::Areas(shapes)) = &self.cut else { return false };
         let (Some(around), Some(square)) = (shapes.bounds(), self.level.square(tile)) else {
             return false;
         };

@@ -17,12 +17,12 @@ mod ready;
 mod tiling;
 mod walk;
 
-pub use detail::{Detail, Reason};
+pub use detail::{DetailLevel, Reason};
 pub use options::Options;
-pub use piece::{Body, Piece, Shape};
-pub use place::{Placed, extent, place};
+pub use piece::{GridShape, TileBody, TilePiece};
+pub use place::{PlacedGeometry, extent, place};
 pub use pyramid::Pyramid;
-pub use ready::{Feature, WORLDS};
+pub use ready::{TileFeature, WORLDS};
 pub use tiling::{Reach, Subject, Tiling};
 pub use walk::{Content, count, walk};
 

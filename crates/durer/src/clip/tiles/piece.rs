@@ -13,7 +13,7 @@ use crate::trace::NoTrace;
 
 /// Points, lines or areas.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Body {
+pub enum TileBody {
     /// Points.
     Points(Vec<DVec2>),
     /// Lines in one flat buffer.
@@ -29,7 +29,7 @@ pub enum Body {
 
 /// Points, lines or areas on a grid of whole numbers.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum GridShape {
     /// Points.
     Points(Vec<I64Vec2>),
     /// Lines of at least two points, without repeated points.
@@ -40,15 +40,15 @@ pub enum Shape {
 
 /// A part of a feature in a tile.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Piece {
+pub struct TilePiece {
     /// The index of the feature.
     pub feature: usize,
     /// Shape on the grid of the tile: (0, 0) is its upper left corner, y counts downwards. Outer rings have positive
     /// signed areas in these coordinates, holes negative ones.
-    pub shape: Shape,
+    pub shape: GridShape,
 }
 
-impl Body {
+impl TileBody {
     /// Returns all points.
     pub fn points(&self) -> &[DVec2] {
         match self {
@@ -83,10 +83,10 @@ impl Body {
     ///
     /// # Errors
     /// As [`overlay()`].
-    pub fn snapped(&self, origin: I64Vec2, fill: WindingRule) -> Result<Shape> {
+    pub fn snapped(&self, origin: I64Vec2, fill: WindingRule) -> Result<GridShape> {
         let snap = |p: DVec2| I64Vec2::new(nearest(p.x, origin.x), nearest(p.y, origin.y));
         Ok(match self {
-            Self::Points(points) => Shape::Points(points.iter().copied().map(snap).collect()),
+            Self::Points(points) => GridShape::Points(points.iter().copied().map(snap).collect()),
             Self::Lines { points, ends } => {
                 let mut start = 0;
                 let line = |&end: &usize| {
@@ -96,14 +96,14 @@ impl Body {
                     line.dedup();
                     (line.len() > 1).then_some(line)
                 };
-                Shape::Lines(ends.iter().filter_map(line).collect())
+                GridShape::Lines(ends.iter().filter_map(line).collect())
             }
-            Self::Areas(shapes) => Shape::Areas(valid(shapes, snap, fill)?),
+            Self::Areas(shapes) => GridShape::Areas(valid(shapes, snap, fill)?),
         })
     }
 }
 
-impl Shape {
+impl GridShape {
     /// Returns whether there is nothing of it.
     pub(crate) fn is_empty(&self) -> bool {
         match self {
@@ -141,17 +141,17 @@ impl Shape {
     }
 
     /// Returns the geometry with coordinates of f64.
-    pub(crate) fn to_body(&self) -> Body {
+    pub(crate) fn to_body(&self) -> TileBody {
         let float = |p: &I64Vec2| p.as_dvec2();
         match self {
-            Self::Points(points) => Body::Points(points.iter().map(float).collect()),
+            Self::Points(points) => TileBody::Points(points.iter().map(float).collect()),
             Self::Lines(lines) => {
                 let (mut points, mut ends) = (Vec::new(), Vec::new());
                 for line in lines {
                     points.extend(line.iter().map(float));
                     ends.push(points.len());
                 }
-                Body::Lines { points, ends }
+                TileBody::Lines { points, ends }
             }
             Self::Areas(shapes) => {
                 let mut areas = Shapes::new();
@@ -159,7 +159,7 @@ impl Shape {
                     polygon.rings().for_each(|ring| areas.push_ring(ring.iter().map(float)));
                     areas.end_polygon();
                 }
-                Body::Areas(areas)
+                TileBody::Areas(areas)
             }
         }
     }

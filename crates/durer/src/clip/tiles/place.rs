@@ -1,16 +1,16 @@
 //! Geometries on the square of Web Mercator.
 
 use super::ready::WORLDS;
-use super::{Body, Coordinates, Feature, mercator};
+use super::{Coordinates, TileBody, TileFeature, mercator};
 use crate::clip::polygon::Shapes;
 use crate::geometry::{Geometry, Points};
 use crate::math::{DVec2, Rect};
 
 /// A geometry by kinds, and its peculiarities.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Placed {
+pub struct PlacedGeometry {
     /// Its areas, lines and points, as far as present; empty if it is far.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<TileBody>,
     /// True if it is beyond all worlds.
     pub far: bool,
     /// True if it has a latitude beyond ±90°.
@@ -29,7 +29,7 @@ struct Way {
 }
 
 /// Returns west, south, east and north of all features within the world, in degrees; `None` if there is no place.
-pub fn extent(features: &[Feature]) -> Option<[f64; 4]> {
+pub fn extent(features: &[TileFeature]) -> Option<[f64; 4]> {
     let around = Rect::around(features.iter().flat_map(|f| f.body.points().iter().copied()))?;
     let (mut low, mut high) = (around.min(), around.max());
     if low.x < 0.0 || high.x > 1.0 {
@@ -64,12 +64,13 @@ struct Parts {
 /// let short = place(&line, Coordinates::LonLat, true);
 /// assert!(!short.long && short.bodies[0].points()[1].x > 1.0);
 /// ```
-pub fn place(geometry: &Geometry, coordinates: Coordinates, short_way: bool) -> Placed {
-    let (mut parts, mut placed) = (Parts::default(), Placed::default());
+pub fn place(geometry: &Geometry, coordinates: Coordinates, short_way: bool) -> PlacedGeometry {
+    let (mut parts, mut placed) = (Parts::default(), PlacedGeometry::default());
     let way = Way { coordinates, short: short_way };
     parts.add(geometry, way, &mut placed);
     let Parts { points, lines, ends, areas } = parts;
-    let bodies = [Body::Areas(areas), Body::Lines { points: lines, ends }, Body::Points(points)];
+    let bodies =
+        [TileBody::Areas(areas), TileBody::Lines { points: lines, ends }, TileBody::Points(points)];
     for body in bodies {
         let near = |p: &DVec2| p.x.abs().max(p.y.abs()) < WORLDS;
         placed.far |= !body.points().iter().all(near);
@@ -84,7 +85,7 @@ pub fn place(geometry: &Geometry, coordinates: Coordinates, short_way: bool) -> 
 }
 
 impl Parts {
-    fn add(&mut self, geometry: &Geometry, way: Way, doubts: &mut Placed) {
+    fn add(&mut self, geometry: &Geometry, way: Way, doubts: &mut PlacedGeometry) {
         match geometry {
             Geometry::Point(points) | Geometry::MultiPoint(points) => {
                 self.points.extend(run(points, false, way, doubts));
@@ -103,12 +104,12 @@ impl Parts {
         }
     }
 
-    fn add_line(&mut self, line: &Points, way: Way, doubts: &mut Placed) {
+    fn add_line(&mut self, line: &Points, way: Way, doubts: &mut PlacedGeometry) {
         self.lines.extend(run(line, way.short, way, doubts));
         self.ends.push(self.lines.len());
     }
 
-    fn add_polygon(&mut self, rings: &[Points], way: Way, doubts: &mut Placed) {
+    fn add_polygon(&mut self, rings: &[Points], way: Way, doubts: &mut PlacedGeometry) {
         let mut first: Option<f64> = None;
         for ring in rings {
             let mut places = run(ring, way.short, way, doubts);
@@ -156,7 +157,7 @@ fn is_long(from: DVec2, to: DVec2) -> bool {
 }
 
 /// Returns the places of positions; where it matters, each in the world nearest to the one before.
-fn run(points: &Points, short_way: bool, way: Way, doubts: &mut Placed) -> Vec<DVec2> {
+fn run(points: &Points, short_way: bool, way: Way, doubts: &mut PlacedGeometry) -> Vec<DVec2> {
     let degrees = way.coordinates == Coordinates::LonLat;
     let mut before: Option<DVec2> = None;
     let place = |&p: &DVec2| {

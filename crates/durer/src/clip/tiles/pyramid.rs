@@ -10,8 +10,8 @@
 use super::Tile;
 use super::level::{Level, Part};
 use super::options::{Options, cells, check};
-use super::piece::{Body, Piece};
-use super::ready::{Feature, Ready, runs};
+use super::piece::{TileBody, TilePiece};
+use super::ready::{Ready, TileFeature, runs};
 use super::walk::{count as count_tiles, walk};
 use crate::clip::simplify::coverage::{Coverage, Options as Simplify};
 use crate::trace::NoTrace;
@@ -31,7 +31,7 @@ impl Pyramid {
     /// # Errors
     /// [`Error::NonFinite`] and [`Error::Parameter`] for places beyond [`WORLDS`](super::WORLDS) and for options
     /// outside of their domains; [`Error::Limit`] for 2³² points of one layer and more.
-    pub fn new(features: Vec<Feature>, options: Options) -> Result<Self> {
+    pub fn new(features: Vec<TileFeature>, options: Options) -> Result<Self> {
         check(&options)?;
         let layers = features.iter().map(|f| f.layer + 1).max().unwrap_or(0);
         let mut levels: Vec<Vec<u8>> = vec![Vec::new(); features.len()];
@@ -43,7 +43,7 @@ impl Pyramid {
             levels[feature] = of_feature;
         }
         let mut polygons_before = 0;
-        let ready = |(feature, levels): (Feature, Vec<u8>)| {
+        let ready = |(feature, levels): (TileFeature, Vec<u8>)| {
             let ready = Ready::new(feature, levels, polygons_before)?;
             polygons_before += ready.areas.len();
             Ok(ready)
@@ -86,7 +86,7 @@ impl Pyramid {
     pub fn visit<R: Send, E: From<Error>>(
         &self,
         zoom: u8,
-        make: impl Fn(Tile, Vec<Piece>) -> R + Sync + Send,
+        make: impl Fn(Tile, Vec<TilePiece>) -> R + Sync + Send,
         mut take: impl FnMut(Tile, R) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let level = self.level(zoom.min(Tile::MAX_ZOOM));
@@ -129,7 +129,7 @@ impl Pyramid {
 
 /// Returns the first level that has each point, of the lines and areas of a layer.
 fn layer_levels(
-    features: &[Feature],
+    features: &[TileFeature],
     layer: usize,
     options: &Options,
 ) -> Result<Vec<(usize, Vec<u8>)>> {
@@ -137,11 +137,11 @@ fn layer_levels(
     let own = || features.iter().enumerate().filter(|(_, f)| f.layer == layer);
     for (_, feature) in own() {
         match &feature.body {
-            Body::Points(_) => {}
-            Body::Lines { points, ends } => runs(ends).for_each(|run| {
+            TileBody::Points(_) => {}
+            TileBody::Lines { points, ends } => runs(ends).for_each(|run| {
                 coverage.push_line(points.get(run).unwrap_or_default().iter().copied());
             }),
-            Body::Areas(shapes) => {
+            TileBody::Areas(shapes) => {
                 shapes.rings().for_each(|ring| coverage.push_ring(ring.iter().copied()));
             }
         }
@@ -153,7 +153,7 @@ fn layer_levels(
     let mut weights = coverage.weights(&simplify, &mut NoTrace)?.into_iter();
     let level = |weight: f64| (first..last).find(|&zoom| weight > tolerance(zoom)).unwrap_or(last);
     let levels = own()
-        .filter(|(_, f)| !matches!(f.body, Body::Points(_)))
+        .filter(|(_, f)| !matches!(f.body, TileBody::Points(_)))
         .map(|(i, f)| (i, weights.by_ref().take(f.body.points().len()).map(level).collect()));
     Ok(levels.collect())
 }

@@ -1,17 +1,17 @@
 //! Features prepared for all levels of a pyramid.
 
-use super::piece::Body;
+use super::piece::TileBody;
 use crate::clip::polygon::{Polygon, WindingRule, signed_area};
 use crate::math::{DVec2, Rect};
 use crate::{Error, Result};
 
 /// A feature in the square of [`super::mercator`].
 #[derive(Debug, Clone, PartialEq)]
-pub struct Feature {
+pub struct TileFeature {
     /// Features of one layer are simplified together.
     pub layer: usize,
     /// Its geometry, within [`WORLDS`].
-    pub body: Body,
+    pub body: TileBody,
     /// Fill rule of its areas.
     pub fill: WindingRule,
 }
@@ -23,7 +23,7 @@ pub const WORLDS: f64 = 4.0;
 #[derive(Debug)]
 pub(super) struct Ready {
     pub layer: usize,
-    pub body: Body,
+    pub body: TileBody,
     pub fill: WindingRule,
     pub bounds: Rect,
     /// The first level that has each point; empty for points.
@@ -36,8 +36,8 @@ pub(super) struct Ready {
 
 impl Ready {
     /// Checks a feature, and finds its bounds and areas.
-    pub fn new(feature: Feature, levels: Vec<u8>, polygons_before: usize) -> Result<Self> {
-        let Feature { layer, body, fill } = feature;
+    pub fn new(feature: TileFeature, levels: Vec<u8>, polygons_before: usize) -> Result<Self> {
+        let TileFeature { layer, body, fill } = feature;
         let points = body.points();
         if let Some(index) = points.iter().position(|p| !p.is_finite()) {
             return Err(Error::NonFinite { what: "point", index });
@@ -50,7 +50,7 @@ impl Ready {
             return Err(Error::parameter("place", bounds.max(), "within four worlds of the first"));
         }
         let areas = match &body {
-            Body::Areas(shapes) => shapes.polygons().map(area).collect(),
+            TileBody::Areas(shapes) => shapes.polygons().map(area).collect(),
             _ => Vec::new(),
         };
         Ok(Self { layer, body, fill, bounds, levels, areas, polygons_before })

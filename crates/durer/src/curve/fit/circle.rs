@@ -3,7 +3,7 @@
 use super::measure::{Run, forwards};
 use super::{EXACT, joined};
 use crate::math::DVec2;
-use crate::target::Arc;
+use crate::target::EllipticArc;
 use std::f64::consts::TAU;
 
 /// The fewest chords of a circular arc.
@@ -13,7 +13,7 @@ pub(super) const LEAST: usize = 4;
 const FURTHEST: f64 = TAU - 0.05;
 
 /// Returns the arc that contains all points of a run exactly. `turned` is the sum of the turns between its ends.
-pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
+pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<EllipticArc> {
     let middle = run.points[run.points.len() / 2];
     let found = arc(run.first(), middle, run.last(), turned)?;
     run.is_near(&found, tolerance * EXACT).then_some(found)
@@ -21,7 +21,7 @@ pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
 
 /// Returns an arc between the ends of a run that all its points are near to: that through the middle one, moved to
 /// where the errors on both sides are equal.
-pub(super) fn loose(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
+pub(super) fn loose(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<EllipticArc> {
     let (first, last) = (run.first(), run.last());
     let middle = run.points[run.points.len() / 2];
     let through = arc(first, middle, last, turned)?;
@@ -37,13 +37,13 @@ pub(super) fn loose(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
 }
 
 /// Returns the arc between two points through a third one, which turns as `turned` says.
-fn arc(first: DVec2, middle: DVec2, last: DVec2, turned: f64) -> Option<Arc> {
+fn arc(first: DVec2, middle: DVec2, last: DVec2, turned: f64) -> Option<EllipticArc> {
     let center = center(first, middle, last)?;
     let (a, b) = (first - center, last - center);
     let turn = forwards(libm::atan2(a.perp_dot(b), a.dot(b)), turned);
     let is_one = turned != 0.0 && turned.abs() < FURTHEST && turn.abs() < FURTHEST;
     // The turns inside cover all chords except half of the first and half of the last.
-    (is_one && turn.abs() >= turned.abs() * 0.5).then_some(Arc {
+    (is_one && turn.abs() >= turned.abs() * 0.5).then_some(EllipticArc {
         center,
         axis: a,
         ratio: 1.0,
@@ -63,7 +63,7 @@ fn center(a: DVec2, b: DVec2, c: DVec2) -> Option<DVec2> {
 }
 
 /// Returns the circle around all points of a closed run that has the least squares of its equation's errors (Kåsa).
-pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<Arc> {
+pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<EllipticArc> {
     let points = run.points.get(1..)?;
     let middle = points.iter().sum::<DVec2>() / points.len() as f64;
     let (mut xx, mut xy, mut yy, mut right) = (0.0, 0.0, 0.0, DVec2::ZERO);
@@ -77,17 +77,17 @@ pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<Arc> {
     let radius = (off.length_squared() + (xx + yy) / points.len() as f64).sqrt();
     let center = middle + off;
     let axis = (run.first() - center).normalize_or_zero() * radius;
-    let arc = Arc { center, axis, ratio: 1.0, start: 0.0, turn: TAU.copysign(turned) };
+    let arc = EllipticArc { center, axis, ratio: 1.0, start: 0.0, turn: TAU.copysign(turned) };
     (center.is_finite() && radius > 0.0 && radius.is_finite()).then_some(arc)
 }
 
 /// Returns an arc that ends one point earlier or later than a run's, moved as [`joined`] does.
-pub(super) fn prolonged(arc: &Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
+pub(super) fn prolonged(arc: &EllipticArc, run: &Run<'_>, tolerance: f64) -> Option<EllipticArc> {
     let at = |p: DVec2| super::measure::angle_of(arc, p);
     let start = at(run.first());
     let turn = forwards(at(run.last()) - start, arc.turn);
     let turn = if turn.abs() > TAU { turn - TAU.copysign(turn) } else { turn };
-    let longer = Arc { start, turn, ..*arc };
+    let longer = EllipticArc { start, turn, ..*arc };
     let is_longer = turn.abs() >= arc.turn.abs() && turn.abs() < FURTHEST;
     joined(longer, run, tolerance).filter(|found| is_longer && run.is_near(found, tolerance))
 }

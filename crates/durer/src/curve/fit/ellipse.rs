@@ -3,7 +3,7 @@
 use super::measure::{Run, angle_of, forwards};
 use super::{EXACT, joined};
 use crate::math::DVec2;
-use crate::target::Arc;
+use crate::target::EllipticArc;
 use std::f64::consts::{PI, TAU};
 
 /// Smallest ratio of an ellipse's axes: the ends of flatter ones are corners.
@@ -14,7 +14,7 @@ const LEAST_TURN: f64 = PI / 3.0;
 
 /// Returns the elliptical arc that contains all points of a run exactly. `turned` is the sum of the turns between its
 /// ends.
-pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
+pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<EllipticArc> {
     if turned.abs() >= TAU - 0.05 {
         return None;
     }
@@ -22,7 +22,7 @@ pub(super) fn exact(run: &Run<'_>, turned: f64, tolerance: f64) -> Option<Arc> {
     let start = angle_of(&whole, run.first());
     let turn = forwards(angle_of(&whole, run.last()) - start, turned);
     let turn = if turn.abs() > TAU { turn - TAU.copysign(turn) } else { turn };
-    let arc = Arc { start, turn, ..whole };
+    let arc = EllipticArc { start, turn, ..whole };
     let is_near = run.is_near(&arc, tolerance * EXACT);
     is_near.then(|| joined(arc, run, tolerance)).flatten()
 }
@@ -34,7 +34,7 @@ pub(super) fn is_certain(turned: f64) -> bool {
 
 /// Returns the ellipse whose equation the points of a run fulfil best: x² + y² + d (x² − y²) + e xy + f x + g y + h =
 /// 0, by least squares. It begins where the run does.
-pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<Arc> {
+pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<EllipticArc> {
     let count = run.points.len() as f64;
     let middle = run.points.iter().sum::<DVec2>() / count;
     let spread = run.points.iter().map(|p| p.distance_squared(middle)).sum::<f64>() / count;
@@ -70,8 +70,8 @@ pub(super) fn whole(run: &Run<'_>, turned: f64) -> Option<Arc> {
     }
     let axis = DVec2::new(cos, sin) * (longer * size);
     let turn = TAU.copysign(turned);
-    let arc = Arc { center: middle + center * size, axis, ratio, start: 0.0, turn };
-    Some(Arc { start: angle_of(&arc, run.first()), ..arc })
+    let arc = EllipticArc { center: middle + center * size, axis, ratio, start: 0.0, turn };
+    Some(EllipticArc { start: angle_of(&arc, run.first()), ..arc })
 }
 
 /// Solves five linear equations, the right side last in each row, by Gauss's elimination with the largest pivots.

@@ -3,7 +3,7 @@
 use super::bends::Bends;
 use super::measure::Run;
 use super::{EXACT, Fitted, circle, ellipse, joined};
-use crate::target::{Arc, Curve, Piece};
+use crate::target::{Curve, CurvePiece, EllipticArc};
 use std::f64::consts::TAU;
 
 /// Fewer points make no whole circle.
@@ -27,8 +27,8 @@ pub(super) fn whole(bends: &Bends) -> Option<Fitted> {
     };
     // Folds exist only among points that are exactly on a circle.
     let all = Run::of_all(&turned_to, 0, count);
-    let arc: Arc = near(&run, EXACT).or_else(|| near(&all, 1.0))?;
+    let arc: EllipticArc = near(&run, EXACT).or_else(|| near(&all, 1.0))?;
     let start = run.first();
-    let curve = Curve { start, pieces: vec![Piece::Arc(arc, start)], closed: true };
+    let curve = Curve { start, pieces: vec![CurvePiece::Arc(arc, start)], closed: true };
     Some(Fitted { curve, from: vec![first] })
 }

@@ -2,7 +2,7 @@
 
 use super::bends::Bends;
 use crate::math::DVec2;
-use crate::target::Arc;
+use crate::target::EllipticArc;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
@@ -48,7 +48,7 @@ impl<'a> Run<'a> {
 
     /// Returns whether all points are within `tolerance` of an arc, in order along it, and the arc leaves no chord by
     /// more than is allowed.
-    pub fn is_near(&self, arc: &Arc, tolerance: f64) -> bool {
+    pub fn is_near(&self, arc: &EllipticArc, tolerance: f64) -> bool {
         let has_folds = self.folds.iter().all(|fold| is_within(arc, *fold, tolerance));
         has_folds
             && if arc.is_circular() {
@@ -70,7 +70,7 @@ impl<'a> Run<'a> {
             && self.points.windows(2).all(goes_on)
     }
 
-    fn is_near_circle(&self, arc: &Arc, tolerance: f64) -> bool {
+    fn is_near_circle(&self, arc: &EllipticArc, tolerance: f64) -> bool {
         let radius2 = arc.axis.length_squared();
         let radius = radius2.sqrt();
         let off = |p: &DVec2| (p.distance(arc.center) - radius).abs();
@@ -86,7 +86,7 @@ impl<'a> Run<'a> {
             })
     }
 
-    fn is_near_ellipse(&self, arc: &Arc, tolerance: f64) -> bool {
+    fn is_near_ellipse(&self, arc: &EllipticArc, tolerance: f64) -> bool {
         let mut angle = f64::NAN;
         let mut last_off = 0.0;
         for (i, p) in self.points.iter().enumerate() {
@@ -109,20 +109,20 @@ impl<'a> Run<'a> {
 }
 
 /// Returns whether a point is within an arc's ellipse, or outside by at most the tolerance.
-fn is_within(arc: &Arc, p: DVec2, tolerance: f64) -> bool {
+fn is_within(arc: &EllipticArc, p: DVec2, tolerance: f64) -> bool {
     let on = arc.at(angle_of(arc, p));
     on.distance(arc.center) + tolerance >= p.distance(arc.center)
 }
 
 /// Returns the largest distance of an ellipse from the chord between two of its points.
-fn rise(arc: &Arc, angle: f64, step: f64, from: DVec2, to: DVec2) -> f64 {
+fn rise(arc: &EllipticArc, angle: f64, step: f64, from: DVec2, to: DVec2) -> f64 {
     let middle = arc.at(angle + step * 0.5) - arc.center;
     let height = middle * (1.0 - libm::cos(step * 0.5));
     height.perp_dot((to - from).normalize_or_zero()).abs()
 }
 
 /// Returns the angle of a point on an arc's ellipse, measured like the arc's `start`.
-pub(super) fn angle_of(arc: &Arc, p: DVec2) -> f64 {
+pub(super) fn angle_of(arc: &EllipticArc, p: DVec2) -> f64 {
     let v = p - arc.center;
     libm::atan2(arc.axis.perp_dot(v) / arc.ratio, arc.axis.dot(v))
 }

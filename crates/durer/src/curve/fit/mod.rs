@@ -22,7 +22,7 @@ mod rest;
 mod stretch;
 
 use crate::math::DVec2;
-use crate::target::{Arc, Curve, Piece};
+use crate::target::{Curve, CurvePiece, EllipticArc};
 use bends::Bends;
 use measure::Run;
 
@@ -79,7 +79,7 @@ pub struct Fitted {
 /// ```
 /// use durer::curve::fit::{Options, Polyline, fit};
 /// use durer::math::DVec2;
-/// use durer::target::Piece;
+/// use durer::target::CurvePiece;
 /// let points: Vec<DVec2> =
 ///     (0..40).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 40.0) * 8.0).collect();
 /// let polygon = Polyline { points: &points, closed: true, kept: &[] };
@@ -108,7 +108,7 @@ pub fn fit(
         return Some(whole);
     }
     let bends = bends.started();
-    let mut pieces: Vec<(usize, Piece)> = Vec::new();
+    let mut pieces: Vec<(usize, CurvePiece)> = Vec::new();
     for ends in bends.breaks.windows(2) {
         stretch::fit(&bends, ends[0], ends[1], &mut pieces);
     }
@@ -121,7 +121,8 @@ pub fn fit(
 /// Returns the polyline itself.
 fn straight(points: &[DVec2], closed: bool) -> Fitted {
     let again = points.first().filter(|_| closed);
-    let pieces: Vec<Piece> = points.iter().skip(1).chain(again).map(|p| Piece::Line(*p)).collect();
+    let pieces: Vec<CurvePiece> =
+        points.iter().skip(1).chain(again).map(|p| CurvePiece::Line(*p)).collect();
     let start = points.first().copied().unwrap_or_default();
     Fitted { from: (0..pieces.len()).collect(), curve: Curve { start, pieces, closed } }
 }
@@ -159,10 +160,10 @@ fn longest<T>(
 }
 
 /// Moves an arc, by turning and scaling it, so that it begins and ends in two points.
-fn through(arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
+fn through(arc: &EllipticArc, start: DVec2, end: DVec2) -> Option<EllipticArc> {
     let (first, last) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
     if arc.is_whole() {
-        return Some(Arc { center: arc.center + (start - first), ..*arc });
+        return Some(EllipticArc { center: arc.center + (start - first), ..*arc });
     }
     let (was, is) = (last - first, end - start);
     let scale = was.length_squared();
@@ -172,12 +173,13 @@ fn through(arc: &Arc, start: DVec2, end: DVec2) -> Option<Arc> {
     // The quotient of two complex numbers.
     let by = DVec2::new(is.dot(was), was.perp_dot(is)) / scale;
     let moved = |v: DVec2| by.rotate(v);
-    let arc = Arc { center: start + moved(arc.center - first), axis: moved(arc.axis), ..*arc };
+    let arc =
+        EllipticArc { center: start + moved(arc.center - first), axis: moved(arc.axis), ..*arc };
     (arc.center.is_finite() && arc.axis.is_finite()).then_some(arc)
 }
 
 /// Returns an arc that begins and ends where a run does: unchanged if it does so up to rounding, else moved.
-fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
+fn joined(arc: EllipticArc, run: &Run<'_>, tolerance: f64) -> Option<EllipticArc> {
     let (first, last) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
     let apart = first.distance(run.first()).max(last.distance(run.last()));
     if apart <= tolerance * JOINED {
@@ -187,10 +189,15 @@ fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
 }
 
 /// Returns the part of an arc between two points that are on it up to rounding.
-pub(crate) fn between(arc: &Arc, start: DVec2, end: DVec2, tolerance: f64) -> Option<Arc> {
+pub(crate) fn between(
+    arc: &EllipticArc,
+    start: DVec2,
+    end: DVec2,
+    tolerance: f64,
+) -> Option<EllipticArc> {
     let begin = measure::angle_of(arc, start);
     let turn = measure::forwards(measure::angle_of(arc, end) - begin, arc.turn);
-    let part = Arc { start: begin, turn, ..*arc };
+    let part = EllipticArc { start: begin, turn, ..*arc };
     let off = part.at(begin).distance(start).max(part.at(begin + turn).distance(end));
     (off <= tolerance * JOINED && turn != 0.0).then_some(part)
 }
@@ -201,12 +208,12 @@ const SAME: f64 = 0.25;
 /// Returns the part of a whole circle or ellipse that matches an arc from `start` to `end`, up to a small part of the
 /// tolerance.
 pub(crate) fn part_of(
-    whole: &Arc,
-    arc: &Arc,
+    whole: &EllipticArc,
+    arc: &EllipticArc,
     start: DVec2,
     end: DVec2,
     tolerance: f64,
-) -> Option<Arc> {
+) -> Option<EllipticArc> {
     let off = whole.center.distance(arc.center);
     let radii = (whole.radii() - arc.radii()).abs().max_element();
     if whole.is_circular() != arc.is_circular() || off + radii > tolerance * SAME {
@@ -214,8 +221,9 @@ pub(crate) fn part_of(
     }
     let begin = measure::angle_of(whole, start);
     let turn = measure::forwards(measure::angle_of(whole, end) - begin, arc.turn);
-    let part = Arc { start: begin, turn: if arc.is_whole() { arc.turn } else { turn }, ..*whole };
-    let middle = |arc: &Arc| arc.at(arc.start + arc.turn * 0.5);
+    let part =
+        EllipticArc { start: begin, turn: if arc.is_whole() { arc.turn } else { turn }, ..*whole };
+    let middle = |arc: &EllipticArc| arc.at(arc.start + arc.turn * 0.5);
     let ends = part.at(begin).distance(start).max(part.at(begin + part.turn).distance(end));
     let is_same = middle(&part).distance(middle(arc)) <= tolerance * SAME;
     (ends <= tolerance * JOINED && is_same).then_some(part)

@@ -5,7 +5,7 @@ use super::cubic::{self, Ways};
 use super::measure::Run;
 use super::{EXACT, circle, longest};
 use crate::math::DVec2;
-use crate::target::Piece;
+use crate::target::CurvePiece;
 
 /// Smallest number of chords that a cubic curve replaces.
 const LEAST_CUBIC: usize = 3;
@@ -17,11 +17,11 @@ const LEAST_LINE: usize = 2;
 const FURTHER: f64 = 1.25;
 
 /// Appends the pieces from one point to another, each with the index of its first point.
-pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, Piece)>) {
+pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, CurvePiece)>) {
     let mut at = from;
     while at < to {
         let (end, piece) = longest_piece(bends, at, to, pieces)
-            .unwrap_or((at + 1, Piece::Line(bends.points[at + 1])));
+            .unwrap_or((at + 1, CurvePiece::Line(bends.points[at + 1])));
         pieces.push((at, piece));
         at = end;
     }
@@ -31,8 +31,8 @@ fn longest_piece(
     bends: &Bends,
     from: usize,
     to: usize,
-    before: &[(usize, Piece)],
-) -> Option<(usize, Piece)> {
+    before: &[(usize, CurvePiece)],
+) -> Option<(usize, CurvePiece)> {
     if to - from < LEAST_LINE || !is_bent(bends, from) {
         return None;
     }
@@ -51,13 +51,13 @@ fn longest_piece(
     let reach = |end: usize| length(end) * FURTHER;
     let bent = arc.as_ref().map(|a| a.0).max(curve.as_ref().map(|c| c.0));
     if let Some(end) = line.filter(|end| reach(*end) >= bent.map_or(0.0, length)) {
-        return Some((end, Piece::Line(bends.points[end])));
+        return Some((end, CurvePiece::Line(bends.points[end])));
     }
     match (arc, curve) {
         (Some((end, arc)), curve) if reach(end) >= curve.map_or(0.0, |c| length(c.0)) => {
-            Some((end, Piece::Arc(arc, bends.points[end])))
+            Some((end, CurvePiece::Arc(arc, bends.points[end])))
         }
-        (_, Some((end, [a, b]))) => Some((end, Piece::Cubic(a, b, bends.points[end]))),
+        (_, Some((end, [a, b]))) => Some((end, CurvePiece::Cubic(a, b, bends.points[end]))),
         _ => None,
     }
 }
@@ -90,12 +90,12 @@ fn first_ways(
     bends: &Bends,
     from: usize,
     to: usize,
-    before: &[(usize, Piece)],
+    before: &[(usize, CurvePiece)],
 ) -> [Option<DVec2>; 2] {
     let is_break = bends.breaks.binary_search(&from).is_ok();
     let smooth = match before.last() {
-        Some((_, piece @ Piece::Arc(..))) if !is_break => Some(piece.ways(DVec2::ZERO)[1]),
-        Some((_, Piece::Cubic(_, b, end))) if !is_break => Some(*end - *b),
+        Some((_, piece @ CurvePiece::Arc(..))) if !is_break => Some(piece.ways(DVec2::ZERO)[1]),
+        Some((_, CurvePiece::Cubic(_, b, end))) if !is_break => Some(*end - *b),
         _ => None,
     };
     let own = end_way(bends, from, from + 1, from + 2.min(to - from));

@@ -3,7 +3,7 @@
 use super::bends::Bends;
 use super::measure::Run;
 use super::{circle, ellipse, longest, rest};
-use crate::target::{Arc, Piece};
+use crate::target::{CurvePiece, EllipticArc};
 use std::f64::consts::PI;
 
 /// The fewest chords of an elliptical arc.
@@ -20,16 +20,16 @@ const CERTAIN: f64 = PI / 3.0;
 struct Found {
     from: usize,
     to: usize,
-    arc: Arc,
+    arc: EllipticArc,
 }
 
 /// Appends the pieces of a stretch, each with the index of its first point.
-pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, Piece)>) {
+pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, CurvePiece)>) {
     let mut at = from;
     if to - from >= circle::LEAST {
         for found in prolonged(bends, exact_arcs(bends, from, to), from, to) {
             rest::fit(bends, at, found.from, pieces);
-            pieces.push((found.from, Piece::Arc(found.arc, bends.points[found.to])));
+            pieces.push((found.from, CurvePiece::Arc(found.arc, bends.points[found.to])));
             at = found.to;
         }
     }
@@ -88,7 +88,7 @@ fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
 }
 
 /// Returns whether a circular arc exactly through its points is certain to be one.
-fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) -> bool {
+fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &EllipticArc)) -> bool {
     if end == to || arc.turn.abs() >= CERTAIN {
         return true;
     }

@@ -5,7 +5,7 @@ use super::{BORDERS, Cutting, NO_HEAD, TAKES, end_name, figure, p};
 use crate::Result;
 use crate::clip::line::cyrus_beck::{Numbers, Step};
 use crate::clip::line::{
-    ConvexPolygon, End, Relation, Segment, cyrus_beck, homogeneous, liang_barsky,
+    ConvexPolygon, End, HalfSpaceRelation, Segment, cyrus_beck, homogeneous, liang_barsky,
 };
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Figure, Input};
@@ -227,7 +227,7 @@ struct State {
     ring: Vec<DVec2>,
     /// The two corners of each border, in the order of their indices, and its names in sentences and tables.
     borders: Vec<([DVec2; 2], [Word; 2])>,
-    seen: Vec<(usize, Relation, Numbers)>,
+    seen: Vec<(usize, HalfSpaceRelation, Numbers)>,
 }
 
 impl State {
@@ -367,23 +367,23 @@ impl State {
 }
 
 /// Returns the look of a crossing that counts: first for entries, second for exits.
-fn look(relation: Relation) -> Option<Look> {
+fn look(relation: HalfSpaceRelation) -> Option<Look> {
     match relation {
-        Relation::Entering => Some(Look::First),
-        Relation::Leaving => Some(Look::Second),
-        Relation::Inside | Relation::Outside => None,
+        HalfSpaceRelation::Entering => Some(Look::First),
+        HalfSpaceRelation::Leaving => Some(Look::Second),
+        HalfSpaceRelation::Inside | HalfSpaceRelation::Outside => None,
     }
 }
 
-fn border_caption(border: Value, relation: Relation, n: Numbers) -> Caption {
+fn border_caption(border: Value, relation: HalfSpaceRelation, n: Numbers) -> Caption {
     let border = ("border", border);
     let t = ("t", n.t().unwrap_or_default().into());
     let ends = [("start", n.start.into()), ("end", n.end.into())];
     match (relation, ends) {
-        (Relation::Entering, _) => ENTERING.with([border, t, ("lower", n.lower.into())]),
-        (Relation::Leaving, _) => LEAVING.with([border, t, ("upper", n.upper.into())]),
-        (Relation::Inside, [start, end]) => INSIDE.with([border, start, end]),
-        (Relation::Outside, [start, end]) => OUTSIDE.with([border, start, end]),
+        (HalfSpaceRelation::Entering, _) => ENTERING.with([border, t, ("lower", n.lower.into())]),
+        (HalfSpaceRelation::Leaving, _) => LEAVING.with([border, t, ("upper", n.upper.into())]),
+        (HalfSpaceRelation::Inside, [start, end]) => INSIDE.with([border, start, end]),
+        (HalfSpaceRelation::Outside, [start, end]) => OUTSIDE.with([border, start, end]),
     }
 }
 

@@ -5,7 +5,7 @@ use super::{
     CODE, Cutting, END, NO_HEAD, POINT, START, TAKES, border_name, end_name, figure, side,
 };
 use crate::Result;
-use crate::clip::line::sobkow_pospisil_yang::{CASES, Case, INFO, Step, Way, clip};
+use crate::clip::line::sobkow_pospisil_yang::{CASES, Case, EndWay, INFO, Step, clip};
 use crate::clip::outcode::Outcode;
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
@@ -170,7 +170,7 @@ impl State {
         let misses = Word::new("missed beyond", "verfehlt jenseits");
         let mut table = Table::new([NO_HEAD, POINT, CODE, cuts, misses]);
         let [start, end] = self.codes;
-        let none = Way { borders: Outcode::INSIDE, misses: Outcode::INSIDE };
+        let none = EndWay { borders: Outcode::INSIDE, misses: Outcode::INSIDE };
         let ways = match CASES[usize::from(start.0 << 4 | end.0)] {
             Case::Cut { start, end } => [start, end],
             Case::Accept | Case::Reject => [none; 2],

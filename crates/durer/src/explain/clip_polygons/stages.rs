@@ -4,7 +4,7 @@ use super::{ALONG, AROUND, BESIDE, TAKES_WINDOW, before, letter, ring, ring_and_
 use crate::Result;
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::INFO;
-use crate::clip::polygon::sutherland_hodgman::by_borders::{Rule, Step, clip};
+use crate::clip::polygon::sutherland_hodgman::by_borders::{EdgeRule, Step, clip};
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::grid;
 use crate::explain::input::{Input, Options};
@@ -177,10 +177,10 @@ impl State {
                 let on = Word::new("(an end on the border)", "(ein Ende auf dem Rand)");
                 let cut = ("cut", emitted[0].map_or(Value::from(on), |cut| self.placed(cut)));
                 match rule {
-                    Rule::InIn => IN_IN.with([border, from, to]),
-                    Rule::InOut => IN_OUT.with([border, from, to, cut]),
-                    Rule::OutIn => OUT_IN.with([border, from, to, cut]),
-                    Rule::OutOut => OUT_OUT.with([border, from, to]),
+                    EdgeRule::InIn => IN_IN.with([border, from, to]),
+                    EdgeRule::InOut => IN_OUT.with([border, from, to, cut]),
+                    EdgeRule::OutIn => OUT_IN.with([border, from, to, cut]),
+                    EdgeRule::OutOut => OUT_OUT.with([border, from, to]),
                 }
             }
             Step::List { border, vertices } => {

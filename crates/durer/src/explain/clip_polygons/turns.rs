@@ -2,7 +2,7 @@
 
 use super::{BESIDE, CONTAINED, TAKES_WINDOW, letter, ring, ring_and_window, walked, windowed};
 use crate::Result;
-use crate::clip::polygon::maillot::{Code, INFO, Step, Turn, clip};
+use crate::clip::polygon::maillot::{Code, CornerReason, INFO, Step, clip};
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Input, Options};
 use crate::explain::lesson::{Example, Lesson};
@@ -162,10 +162,10 @@ impl State {
             Step::Turn { corner, turn } => {
                 self.out.push(corner);
                 let template = match turn {
-                    Turn::Basic => &BASIC,
-                    Turn::BorderToBorder => &TO_BORDER,
-                    Turn::BorderToCorner => &TO_CORNER,
-                    Turn::CornerToCorner => &OPPOSITE,
+                    CornerReason::Basic => &BASIC,
+                    CornerReason::BorderToBorder => &TO_BORDER,
+                    CornerReason::BorderToCorner => &TO_CORNER,
+                    CornerReason::CornerToCorner => &OPPOSITE,
                 };
                 template.with([("corner", corner.into())])
             }

@@ -5,7 +5,7 @@ use super::{
     squares,
 };
 use crate::clip::polygon::Operand;
-use crate::clip::polygon::weiler_atherton::{Mark, Step};
+use crate::clip::polygon::weiler_atherton::{CrossingMark, Step};
 use crate::clip::polygon::{greiner_hormann, weiler_atherton};
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::lesson::{Example, Lesson};
@@ -169,7 +169,7 @@ static RING: Template = Template::new(
 struct State {
     operands: Operands,
     names: Arc<Names>,
-    lists: [Vec<(DVec2, Option<Mark>)>; 2],
+    lists: [Vec<(DVec2, Option<CrossingMark>)>; 2],
     ring: Vec<DVec2>,
     rings: Vec<Vec<DVec2>>,
 }
@@ -304,13 +304,13 @@ impl State {
         }
     }
 
-    fn listed(&mut self, list: Operand, at: DVec2, mark: Option<Mark>) -> Caption {
+    fn listed(&mut self, list: Operand, at: DVec2, mark: Option<CrossingMark>) -> Caption {
         self.lists[usize::from(list == Operand::Clip)].push((at, mark));
         let values = [("list", operand(list)), ("name", self.name(at).into()), ("at", at.into())];
         let Some(mark) = mark else { return LISTED.with(values) };
         let word = match mark {
-            Mark::Entering => Word::new("entering", "betritt sie"),
-            Mark::Leaving => Word::new("leaving", "verlässt sie"),
+            CrossingMark::Entering => Word::new("entering", "betritt sie"),
+            CrossingMark::Leaving => Word::new("leaving", "verlässt sie"),
         };
         let mut caption = LISTED_CROSSING.with(values);
         caption.values.push(("mark", word.into()));
@@ -322,11 +322,11 @@ impl State {
             Word::new("in order; ↓ enters, ↑ leaves", "der Reihe nach; ↓ tritt ein, ↑ tritt aus");
         let mut table = Table::new([Word::new("list", "Liste"), order]);
         for (list, name) in self.lists.iter().zip([SUBJECT, CLIP]) {
-            let marked = |&(at, mark): &(DVec2, Option<Mark>)| {
+            let marked = |&(at, mark): &(DVec2, Option<CrossingMark>)| {
                 let arrow = match mark {
                     None => "",
-                    Some(Mark::Entering) => "↓",
-                    Some(Mark::Leaving) => "↑",
+                    Some(CrossingMark::Entering) => "↓",
+                    Some(CrossingMark::Leaving) => "↑",
                 };
                 Value::from(self.name(at) + arrow)
             };

@@ -1,7 +1,7 @@
 //! The lessons of clipping text.
 
 use crate::Result;
-use crate::clip::text::{self, Character, Place, Step, TextClipper, clip, of_strokes};
+use crate::clip::text::{self, BoxPlace, Character, Step, TextClipper, clip, of_strokes};
 use crate::curve::Contours;
 use crate::explain::frame::{Frames, Shown, Want, record};
 use crate::explain::input::{Figure, Input};
@@ -206,7 +206,7 @@ struct State {
     window: Rect,
     text: Vec<Character>,
     /// Place of each character, and whether it is kept, once that is known.
-    found: Vec<Option<(Place, bool)>>,
+    found: Vec<Option<(BoxPlace, bool)>>,
     left: Vec<(Vec<DVec2>, bool)>,
 }
 
@@ -232,15 +232,15 @@ impl State {
             Step::Box { character: None, place, .. } => {
                 self.found.fill(Some((*place, false)));
                 let template =
-                    if *place == Place::Within { &STRING_WITHIN } else { &STRING_OUTSIDE };
+                    if *place == BoxPlace::Within { &STRING_WITHIN } else { &STRING_OUTSIDE };
                 template.with([])
             }
             Step::Box { character: Some(own), place, .. } => {
                 self.found[*own] = Some((*place, false));
                 let template = match place {
-                    Place::Within => &WITHIN,
-                    Place::Beyond => &BEYOND,
-                    Place::Crossing => &CROSSING,
+                    BoxPlace::Within => &WITHIN,
+                    BoxPlace::Beyond => &BEYOND,
+                    BoxPlace::Crossing => &CROSSING,
                 };
                 template.with([number(*own)])
             }
@@ -278,9 +278,9 @@ impl State {
         for (number, found) in self.found.iter().enumerate() {
             let Some((place, kept)) = found else { continue };
             let name = match place {
-                Place::Within => Word::new("within", "innen"),
-                Place::Beyond => Word::new("beyond a border", "jenseits"),
-                Place::Crossing => Word::new("crossing", "kreuzt"),
+                BoxPlace::Within => Word::new("within", "innen"),
+                BoxPlace::Beyond => Word::new("beyond a border", "jenseits"),
+                BoxPlace::Crossing => Word::new("crossing", "kreuzt"),
             };
             let result = if *kept { Word::new("kept", "bleibt") } else { Word::new("–", "–") };
             table.row(number + 1, [name.into(), result.into()]);

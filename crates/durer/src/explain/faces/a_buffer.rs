@@ -11,7 +11,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::Vec4;
 use crate::trace::PseudocodeLine;
-use crate::visibility::polygons::a_buffer::{FULL, Fragment, INFO, Step, weights};
+use crate::visibility::polygons::a_buffer::{FULL, FaceFragment, INFO, Step, weights};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -123,7 +123,7 @@ const SUBPIXELS: u32 = 4;
 /// Fragments of the pixel, and the share that each has got.
 #[derive(Clone)]
 struct State {
-    fragments: Vec<Fragment>,
+    fragments: Vec<FaceFragment>,
     weights: Vec<Option<f64>>,
 }
 
@@ -139,7 +139,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
 }
 
 /// Returns the fragment of each face in the pixel from (0, 0) to (4, 4): its sub-pixels are the grid's pixels.
-fn fragments(scene: &Scene) -> Vec<Fragment> {
+fn fragments(scene: &Scene) -> Vec<FaceFragment> {
     let screen = crate::visibility::polygons::Screen {
         width: SUBPIXELS,
         height: SUBPIXELS,
@@ -148,7 +148,7 @@ fn fragments(scene: &Scene) -> Vec<Fragment> {
     let fragment = |face: &crate::visibility::polygons::Face| {
         let mut mask = 0_u16;
         face.pixels(&screen, |[x, y], _| mask |= 1 << (SUBPIXELS * y + x));
-        Fragment { mask, z: face.depths(), color: Vec4::ONE }
+        FaceFragment { mask, z: face.depths(), color: Vec4::ONE }
     };
     scene.faces.iter().map(fragment).collect()
 }

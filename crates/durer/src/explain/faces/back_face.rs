@@ -12,7 +12,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::trace::PseudocodeLine;
-use crate::view::cull::Face;
+use crate::view::cull::FaceSide;
 use crate::visibility::back_face::{Eye, INFO, Options, Step, remove};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -110,7 +110,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
         Ok(())
     })?;
     let faces = faces.to_vec();
-    let mut tested: Vec<(DVec3, Face)> = Vec::new();
+    let mut tested: Vec<(DVec3, FaceSide)> = Vec::new();
     Ok(Frames::new(steps, move |step, want| {
         let Step::Tested { face, area, side } = *step;
         tested.push((area, side));
@@ -118,15 +118,15 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
             [("face", letter(face).into()), ("normal", area.into()), ("dot", area.z.into())];
         let [named, normal, dot] = values;
         let caption = match side {
-            Face::Front => FRONT.with([named, normal, dot]),
-            Face::Back => BACK.with([named, normal, dot]),
-            Face::Edge => EDGE_ON.with([named, normal]),
+            FaceSide::Front => FRONT.with([named, normal, dot]),
+            FaceSide::Back => BACK.with([named, normal, dot]),
+            FaceSide::Edge => EDGE_ON.with([named, normal]),
         };
         want.shown(step.line(), caption, || table(&tested), || picture(&faces, &tested))
     }))
 }
 
-fn table(tested: &[(DVec3, Face)]) -> Table {
+fn table(tested: &[(DVec3, FaceSide)]) -> Table {
     let heads = [
         Word::new("face", "Fläche"),
         Word::new("N", "N"),
@@ -136,7 +136,7 @@ fn table(tested: &[(DVec3, Face)]) -> Table {
     let mut table = Table::new(heads);
     for (number, (area, side)) in tested.iter().enumerate() {
         let stays =
-            if *side == Face::Front { Word::new("yes", "ja") } else { Word::new("no", "nein") };
+            if *side == FaceSide::Front { Word::new("yes", "ja") } else { Word::new("no", "nein") };
         let cells: [Value; 3] = [(*area).into(), area.z.into(), stays.into()];
         table.row(name(number as u32), cells);
     }
@@ -144,7 +144,7 @@ fn table(tested: &[(DVec3, Face)]) -> Table {
 }
 
 /// Draws the faces obliquely, with z to the lower left, and normals from their middles.
-fn picture(faces: &[Vec<DVec3>], tested: &[(DVec3, Face)]) -> Picture {
+fn picture(faces: &[Vec<DVec3>], tested: &[(DVec3, FaceSide)]) -> Picture {
     let flat = |p: DVec3| DVec2::new(p.x - 0.45 * p.z, p.y - 0.3 * p.z);
     let mut picture = Picture::around(faces.iter().flatten().map(|&p| flat(p)), 0.3);
     picture.picture_from_input = None;
@@ -153,7 +153,7 @@ fn picture(faces: &[Vec<DVec3>], tested: &[(DVec3, Face)]) -> Picture {
         picture.chain(closed.collect::<Vec<_>>(), Look::Pale);
     }
     for (ring, (_, side)) in faces.iter().zip(tested) {
-        let look = if *side == Face::Front { Look::Result } else { Look::Thin };
+        let look = if *side == FaceSide::Front { Look::Result } else { Look::Thin };
         picture.ring(ring.iter().map(|&p| flat(p)).collect::<Vec<_>>(), look);
     }
     let now = tested.len().saturating_sub(1);
@@ -161,7 +161,7 @@ fn picture(faces: &[Vec<DVec3>], tested: &[(DVec3, Face)]) -> Picture {
         let center = ring.iter().sum::<DVec3>() / ring.len().max(1) as f64;
         let size = (picture.extent[1] - picture.extent[0]).max_element();
         let tip = center + area.normalize_or_zero() * size * 0.2;
-        let look = if *side == Face::Front { Look::First } else { Look::Second };
+        let look = if *side == FaceSide::Front { Look::First } else { Look::Second };
         picture.ring(ring.iter().map(|&p| flat(p)).collect::<Vec<_>>(), Look::Now);
         picture.arrow(flat(center), flat(tip), look);
         picture.label(flat(center), (-8.0, 8.0), letter(now));

@@ -10,7 +10,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::trace::PseudocodeLine;
-use crate::visibility::polygons::bsp::{INFO, Options, Side, Step, items};
+use crate::visibility::polygons::bsp::{INFO, Options, PlaneSide, Step, items};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -131,13 +131,13 @@ impl State {
         }
     }
 
-    fn add(&mut self, node: u32, piece: u32, below: Option<(u32, Side)>) {
+    fn add(&mut self, node: u32, piece: u32, below: Option<(u32, PlaneSide)>) {
         self.now = node;
         self.nodes.push(Node { piece, front: String::new(), back: String::new() });
         if let Some((above, side)) = below
             && let Some(above) = self.nodes.get_mut(above as usize)
         {
-            let child = if side == Side::Front { &mut above.front } else { &mut above.back };
+            let child = if side == PlaneSide::Front { &mut above.front } else { &mut above.back };
             *child = node.to_string();
         }
     }
@@ -207,10 +207,10 @@ impl State {
 }
 
 /// Returns where a node hangs.
-fn place(below: Option<(u32, Side)>) -> Value {
+fn place(below: Option<(u32, PlaneSide)>) -> Value {
     match below {
         None => Word::new("the root", "die Wurzel").into(),
-        Some((above, Side::Front)) => {
+        Some((above, PlaneSide::Front)) => {
             Value::List(vec![Word::new("in front of node", "vor Knoten").into(), above.into()])
         }
         Some((above, _)) => {
@@ -219,11 +219,11 @@ fn place(below: Option<(u32, Side)>) -> Value {
     }
 }
 
-fn word(side: Side) -> Word {
+fn word(side: PlaneSide) -> Word {
     match side {
-        Side::Front => Word::new("in front of", "vor"),
-        Side::Back => Word::new("behind", "hinter"),
-        Side::On => Word::new("in", "in"),
-        Side::Both => Word::new("on both sides of", "auf beiden Seiten"),
+        PlaneSide::Front => Word::new("in front of", "vor"),
+        PlaneSide::Back => Word::new("behind", "hinter"),
+        PlaneSide::On => Word::new("in", "in"),
+        PlaneSide::Both => Word::new("on both sides of", "auf beiden Seiten"),
     }
 }

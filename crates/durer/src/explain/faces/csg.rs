@@ -11,7 +11,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DMat4, DVec2, DVec3};
 use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::Face;
-use crate::visibility::polygons::csg::{Expression, INFO, Part, Step, items};
+use crate::visibility::polygons::csg::{Expression, INFO, RowPart, Step, items};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -147,7 +147,7 @@ struct State {
     scene: Scene,
     inside: Vec<bool>,
     rows: Vec<[Value; 3]>,
-    part: Option<Part>,
+    part: Option<RowPart>,
 }
 
 fn make(input: &Input, op: BooleanOp, cap: usize) -> Result<Frames> {
@@ -199,8 +199,8 @@ fn solids(faces: &[Vec<DVec3>]) -> Vec<usize> {
 
 impl State {
     fn take(&mut self, step: &Step) -> Caption {
-        let row = |part: Part| ("row", Value::from(part.y));
-        let ends = |part: Part| [("from", part.x0.into()), ("to", (part.x1 - 1).into())];
+        let row = |part: RowPart| ("row", Value::from(part.y));
+        let ends = |part: RowPart| [("from", part.x0.into()), ("to", (part.x1 - 1).into())];
         match step {
             Step::Span { part, faces } => {
                 self.part = Some(*part);
@@ -265,7 +265,7 @@ impl State {
 
     fn picture(&self, step: &Step) -> Picture {
         let mut picture = self.scene.picture();
-        if let Some(Part { y, x0, x1 }) = self.part {
+        if let Some(RowPart { y, x0, x1 }) = self.part {
             let [low, high] = [(x0, y), (x1, y + 1)].map(|(x, y)| DVec2::new(x.into(), y.into()));
             let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y), low];
             let look = if matches!(step, Step::Divide { .. }) { Look::Second } else { Look::Now };

@@ -11,7 +11,7 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::depth_sort::{INFO, Options, Step, items};
-use crate::visibility::surface::depth_sort::Test;
+use crate::visibility::surface::depth_sort::PaintTest;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: "depth-sort",
@@ -129,7 +129,7 @@ impl Sorting {
             Step::Tested { other, passed, .. } => {
                 let (other, face) = self.polygon(other);
                 self.now[1] = Some(face);
-                let number = passed.map_or("–", Test::number);
+                let number = passed.map_or("–", PaintTest::number);
                 self.verdicts.push((own, other.clone(), number.into()));
                 let q = ("q", Value::from(other));
                 match passed {
@@ -183,19 +183,21 @@ impl Sorting {
 }
 
 /// Returns the finding of a test.
-fn why(test: Test) -> Word {
+fn why(test: PaintTest) -> Word {
     match test {
-        Test::Depths => Word::new("their depths are apart", "die Tiefen sind getrennt"),
-        Test::Boxes => Word::new("their boxes are apart", "die umgebenden Rechtecke sind getrennt"),
-        Test::InFrontOfPlane => {
+        PaintTest::Depths => Word::new("their depths are apart", "die Tiefen sind getrennt"),
+        PaintTest::Boxes => {
+            Word::new("their boxes are apart", "die umgebenden Rechtecke sind getrennt")
+        }
+        PaintTest::InFrontOfPlane => {
             Word::new("Q lies before the plane of P", "Q liegt vor der Ebene von P")
         }
-        Test::BehindPlane => {
+        PaintTest::BehindPlane => {
             Word::new("P lies behind the plane of Q", "P liegt hinter der Ebene von Q")
         }
-        Test::Projections => {
+        PaintTest::Projections => {
             Word::new("their projections are apart", "die Projektionen sind getrennt")
         }
-        Test::Pixels => Word::new("P is nearer at no pixel", "P liegt an keinem Pixel näher"),
+        PaintTest::Pixels => Word::new("P is nearer at no pixel", "P liegt an keinem Pixel näher"),
     }
 }

@@ -14,7 +14,7 @@ use crate::target::drawing::LineClass;
 use crate::trace::PseudocodeLine;
 use crate::visibility::line::Intersections;
 use crate::visibility::line::edge_lines::ClassSet;
-use crate::visibility::line::hidden_line::{INFO, Options, Span, Step, draw};
+use crate::visibility::line::hidden_line::{HiddenSpan, INFO, Options, Step, draw};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -66,7 +66,7 @@ static HIDDEN: Template = Template::new(
 #[derive(Clone)]
 struct Known {
     ends: [DVec2; 2],
-    spans: Vec<Span>,
+    spans: Vec<HiddenSpan>,
 }
 
 /// The faces and the lines so far.
@@ -193,7 +193,7 @@ impl State {
 }
 
 /// Returns the ends of a part of a line.
-fn part(line: &Known, span: &Span) -> [DVec2; 2] {
+fn part(line: &Known, span: &HiddenSpan) -> [DVec2; 2] {
     let [p, q] = line.ends;
     [span.from, span.to].map(|t| p + (q - p) * t)
 }

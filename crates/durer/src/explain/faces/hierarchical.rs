@@ -10,7 +10,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::trace::PseudocodeLine;
-use crate::visibility::polygons::hierarchical_z::{INFO, Options, Step, Test, items};
+use crate::visibility::polygons::hierarchical_z::{INFO, Options, PyramidTest, Step, items};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -96,7 +96,7 @@ struct State {
     scene: Scene,
     cells: Vec<[DVec3; 2]>,
     /// Comparisons so far: of what, and with what.
-    tests: Vec<(String, Test)>,
+    tests: Vec<(String, PyramidTest)>,
 }
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
@@ -201,6 +201,6 @@ impl State {
     }
 }
 
-fn numbers(test: &Test) -> [(&'static str, Value); 3] {
+fn numbers(test: &PyramidTest) -> [(&'static str, Value); 3] {
     [("near", test.nearest.into()), ("level", test.level.into()), ("stored", test.farthest.into())]
 }

@@ -10,7 +10,9 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::trace::PseudocodeLine;
-use crate::visibility::line::horizon_curves::{Curve, INFO, Options, Piece, Seen, Step, draw};
+use crate::visibility::line::horizon_curves::{
+    ColumnCurve, HorizonSide, INFO, Options, Step, VisiblePiece, draw,
+};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -133,14 +135,14 @@ static HORIZON: Template = Template::new(
 /// The curves, the two arrays, and the drawn pieces.
 #[derive(Clone)]
 struct State {
-    curves: Vec<Curve>,
+    curves: Vec<ColumnCurve>,
     horizons: Vec<[f64; 2]>,
-    drawn: Vec<Piece>,
+    drawn: Vec<VisiblePiece>,
 }
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
     let curves = laid(input.figure(TAKES)?)?;
-    let last = |curve: &Curve| curve.first + curve.heights.len();
+    let last = |curve: &ColumnCurve| curve.first + curve.heights.len();
     let columns = curves.iter().map(last).max().unwrap_or_default();
     let steps = record(cap, |t| draw(&curves, &Options::columns(columns), t))?;
     let horizons = vec![[f64::INFINITY, f64::NEG_INFINITY]; columns];
@@ -149,7 +151,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
 }
 
 /// Returns the lines as curves: a point in each column, in order.
-fn laid(figure: &Figure) -> Result<Vec<Curve>> {
+fn laid(figure: &Figure) -> Result<Vec<ColumnCurve>> {
     let wrong = || crate::Error::parameter("line", "given", TAKES.en);
     let curve = |line: &Vec<DVec2>| {
         let first = line.first().map_or(0.0, |p| p.x);
@@ -159,7 +161,7 @@ fn laid(figure: &Figure) -> Result<Vec<Curve>> {
             && first.fract() == 0.0
             && first + line.len() as f64 <= MOST as f64;
         let heights = line.iter().map(|p| p.y).collect();
-        fits.then_some(Curve { first: first as usize, heights }).ok_or_else(wrong)
+        fits.then_some(ColumnCurve { first: first as usize, heights }).ok_or_else(wrong)
     };
     figure.lines.iter().map(curve).collect()
 }
@@ -178,9 +180,9 @@ impl State {
                 let [curve, column, y] = values;
                 let (lower, upper) = (("lower", lower.into()), ("upper", upper.into()));
                 match seen {
-                    Seen::Above => ABOVE.with([curve, column, y, upper]),
-                    Seen::Below => BELOW.with([curve, column, y, lower]),
-                    Seen::Hidden => BETWEEN.with([curve, column, y, lower, upper]),
+                    HorizonSide::Above => ABOVE.with([curve, column, y, upper]),
+                    HorizonSide::Below => BELOW.with([curve, column, y, lower]),
+                    HorizonSide::Hidden => BETWEEN.with([curve, column, y, lower, upper]),
                 }
             }
             Step::Crossing { curve, at } => {
@@ -215,7 +217,7 @@ impl State {
     }
 
     fn picture(&self, step: &Step) -> Picture {
-        let points = |curve: &Curve| -> Vec<DVec2> {
+        let points = |curve: &ColumnCurve| -> Vec<DVec2> {
             (curve.first..).zip(&curve.heights).map(|(x, &y)| DVec2::new(x as f64, y)).collect()
         };
         let mut picture = Picture::around(self.curves.iter().flat_map(points), 0.12);

@@ -11,7 +11,9 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::trace::PseudocodeLine;
 use crate::visibility::polygons::Screen;
-use crate::visibility::polygons::patch_subdivision::{INFO, Options, Part, Patch, Step, render};
+use crate::visibility::polygons::patch_subdivision::{
+    BicubicPatch, INFO, Options, PatchPart, Step, render,
+};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -145,10 +147,10 @@ static STORE: Template = Template::new(
 #[derive(Clone)]
 struct State {
     raster: Raster,
-    patches: Vec<Patch>,
+    patches: Vec<BicubicPatch>,
     stored: Vec<Option<(u32, f64)>>,
     /// The piece that the step is about, and its patch.
-    piece: Option<(u32, Part)>,
+    piece: Option<(u32, PatchPart)>,
     pixel: Option<[u32; 2]>,
 }
 
@@ -165,7 +167,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let eye = if nearest < 0.0 { 0.0 } else { nearest + 1.0 };
     let laid = |point: &DVec3| raster.at(point.truncate()).extend(eye - point.z);
     let patch = |rows: &[Vec<DVec3>]| {
-        Patch::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| laid(&rows[j][i]))))
+        BicubicPatch::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| laid(&rows[j][i]))))
     };
     let patches = rows.chunks(4).map(patch).collect::<Result<Vec<_>>>()?;
     let (width, height) = (raster.columns, raster.rows);
@@ -184,7 +186,7 @@ impl State {
     fn take(&mut self, step: &Step) -> Caption {
         self.pixel = None;
         let at = |[x, y]: [u32; 2]| ("pixel", Value::from(DVec2::new(x.into(), y.into())));
-        let mut piece = |patch: u32, part: Part| {
+        let mut piece = |patch: u32, part: PatchPart| {
             self.piece = Some((patch, part));
             [("patch", name(patch).into()), ("part", shown(part))]
         };
@@ -263,7 +265,7 @@ impl State {
 }
 
 /// Returns the border of a piece as a chain.
-fn outline(patch: &Patch, [[u0, u1], [v0, v1]]: Part) -> Vec<DVec2> {
+fn outline(patch: &BicubicPatch, [[u0, u1], [v0, v1]]: PatchPart) -> Vec<DVec2> {
     const STEPS: usize = 12;
     let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(DVec2::from);
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -273,7 +275,7 @@ fn outline(patch: &Patch, [[u0, u1], [v0, v1]]: Part) -> Vec<DVec2> {
 }
 
 /// Returns the parameters of a piece.
-fn shown([[u0, u1], [v0, v1]]: Part) -> Value {
+fn shown([[u0, u1], [v0, v1]]: PatchPart) -> Value {
     let all: [Value; 8] = [
         "u =".into(),
         u0.into(),

@@ -12,7 +12,9 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::trace::{NoTrace, PseudocodeLine};
 use crate::visibility::polygons::Screen;
-use crate::visibility::polygons::portals::{Eye, INFO, Options, Plan, Step, Visit, Window, visits};
+use crate::visibility::polygons::portals::{
+    INFO, Options, Plan, PlanEye, PortalWindow, Step, Visit, visits,
+};
 use crate::{Error, Result};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -165,7 +167,7 @@ struct State {
     plan: Plan,
     eye: DVec2,
     seen: Vec<Visit>,
-    window: Option<Window>,
+    window: Option<PortalWindow>,
 }
 
 fn make(input: &Input, cap: usize) -> Result<Frames> {
@@ -182,7 +184,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     };
     let cell = rooms.iter().position(inside).ok_or_else(|| missing("a room around the eye"))?;
     let plan = Plan::of_rooms(&rooms, &doors, 2.0)?;
-    let from = Eye { at: DVec3::new(eye.x, 0.0, eye.y), cell, focal: FOCAL };
+    let from = PlanEye { at: DVec3::new(eye.x, 0.0, eye.y), cell, focal: FOCAL };
     let screen = Screen { width: SIZE[0], height: SIZE[1], ..Screen::default() };
     let steps = record(cap, |t| visits(&plan, &from, &screen, &OPTIONS, t))?;
     let mut state = State { rooms, doors, plan, eye, seen: Vec::new(), window: None };
@@ -293,7 +295,7 @@ impl State {
     }
 
     /// Returns the window whose borders are drawn: that of a portal, or of the last cell entered.
-    fn shown(&self, step: &Step) -> Option<Window> {
+    fn shown(&self, step: &Step) -> Option<PortalWindow> {
         match *step {
             Step::Portal { bounds, window, .. } => window.or(bounds),
             Step::Enter(_) | Step::Back { .. } => self.window,
@@ -302,6 +304,6 @@ impl State {
 }
 
 /// Returns the first and the last column of a window.
-fn columns(window: Window) -> [Value; 2] {
+fn columns(window: PortalWindow) -> [Value; 2] {
     [window.low[0].into(), window.high[0].saturating_sub(1).into()]
 }

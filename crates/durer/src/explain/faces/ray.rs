@@ -19,7 +19,7 @@ use crate::view::View;
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::ray::{INFO, Options, RayKind, Step, render};
-use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::setup::TriangleFilter;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -129,7 +129,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     model.lights = vec![Light { kind, color: Vec3::splat(50.0) }];
     mirrors(&mut model);
     let view = View::new(camera, PIXELS, 1)?;
-    let surfaces = SurfaceInput::new(&model, &view, Filter::new(Cull::None, 0))?;
+    let surfaces = SurfaceInput::new(&model, &view, TriangleFilter::new(Cull::None, 0))?;
     let lights = PreparedLights::of(&model, view.camera());
     let options = Options { shadows: true, reflections: true, depth: 1, ..Options::default() };
     let mut target = Framebuffer::new(PIXELS, 1);

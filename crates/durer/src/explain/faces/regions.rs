@@ -11,7 +11,7 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::trace::PseudocodeLine;
-use crate::visibility::polygons::regions::{INFO, Region, Step, regions};
+use crate::visibility::polygons::regions::{FaceRegion, INFO, Step, regions};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -53,7 +53,7 @@ static SEEN: Template = Template::new(
 #[derive(Clone)]
 struct State {
     scene: Scene,
-    seen: Vec<Region>,
+    seen: Vec<FaceRegion>,
     by: u32,
     cut: Option<[Shapes; 2]>,
 }

@@ -12,7 +12,9 @@ use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, DVec3};
 use crate::trace::PseudocodeLine;
 use crate::visibility::back_face::Eye;
-use crate::visibility::line::roberts::{Body, Bound, INFO, Line, Options, Step, Values, draw};
+use crate::visibility::line::roberts::{
+    Bound, ConvexBody, INFO, Options, Step, Values, VisibleLine, draw,
+};
 use crate::work::Work;
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -119,8 +121,8 @@ static INVISIBLE: Template = Template::new(
 /// Bodies, and their lines as far as they are decided.
 #[derive(Clone)]
 struct State {
-    bodies: Vec<Body>,
-    lines: Vec<Line>,
+    bodies: Vec<ConvexBody>,
+    lines: Vec<VisibleLine>,
     /// The body that the last line is compared with, and the values of its planes.
     now: Option<(usize, Vec<Values>)>,
     /// Values of the planes of a body at the eye.
@@ -132,7 +134,7 @@ struct State {
 fn make(input: &Input, cap: usize) -> Result<Frames> {
     let faces = input.faces(TAKES)?;
     check_count(faces)?;
-    let bodies = Body::several(faces)?;
+    let bodies = ConvexBody::several(faces)?;
     let steps = record(cap, |t| {
         draw(&bodies, Eye::Along(DVec3::NEG_Z), &Options::default(), &Work::default(), t)
     })?;
@@ -160,7 +162,11 @@ impl State {
             }
             Step::Line { bodies, ends, .. } => {
                 self.eye.clear();
-                self.lines.push(Line { bodies: *bodies, ends: *ends, visible: vec![[0.0, 1.0]] });
+                self.lines.push(VisibleLine {
+                    bodies: *bodies,
+                    ends: *ends,
+                    visible: vec![[0.0, 1.0]],
+                });
                 let [p, q] = ends.map(Value::from);
                 let [body, other] = bodies.map(named);
                 let [body, p, q] = [("body", body), ("p", p), ("q", q)];
@@ -248,7 +254,7 @@ impl State {
     }
 
     fn picture(&self, step: &Step) -> Picture {
-        let corners = self.bodies.iter().flat_map(Body::corners);
+        let corners = self.bodies.iter().flat_map(ConvexBody::corners);
         let mut picture = Picture::around(corners.map(|corner| corner.truncate()), 0.1);
         let now = match step {
             Step::Body { body, .. } | Step::SelfHidden { body, .. } => Some(*body),

@@ -17,7 +17,7 @@ use crate::trace::PseudocodeLine;
 use crate::visibility::surface::Cull;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::scan_line_z::{INFO, Options, Step, render};
-use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::setup::TriangleFilter;
 
 pub(super) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -72,7 +72,7 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
     let scene = Scene::new(input)?;
     let triangles = Triangles::new(&scene)?;
     let (model, view) = triangles.prepared(&scene)?;
-    let surfaces = SurfaceInput::new(&model, &view, Filter::new(Cull::None, 0))?;
+    let surfaces = SurfaceInput::new(&model, &view, TriangleFilter::new(Cull::None, 0))?;
     let lights = PreparedLights::of(&model, view.camera());
     let mut target = Framebuffer::new(view.width(), view.height());
     let steps = record(cap, |t| {

@@ -14,7 +14,7 @@ use crate::math::{DVec2, DVec3};
 use crate::trace::PseudocodeLine;
 use crate::visibility::back_face::Eye;
 use crate::visibility::polygons::Face;
-use crate::visibility::polygons::shadow_volumes::{INFO, Options, Side, Step, render};
+use crate::visibility::polygons::shadow_volumes::{INFO, Options, Step, VolumeSide, render};
 
 pub(in crate::explain) const LESSON: Lesson = Lesson {
     name: INFO.name,
@@ -152,7 +152,7 @@ struct State {
     scene: Scene,
     counts: Vec<Option<i32>>,
     /// Sides so far, and whether their fronts are seen.
-    sides: Vec<(Side, Option<bool>)>,
+    sides: Vec<(VolumeSide, Option<bool>)>,
     face: Option<u32>,
     pixel: Option<[u32; 2]>,
 }
@@ -282,7 +282,7 @@ impl State {
     }
 
     /// Returns the point at which the border of a side leaves the picture.
-    fn end(&self, side: &Side, k: usize) -> DVec2 {
+    fn end(&self, side: &VolumeSide, k: usize) -> DVec2 {
         let (from, along) = (side.ends[k].truncate(), side.away[k].truncate());
         let size = DVec2::new(self.scene.raster.columns.into(), self.scene.raster.rows.into());
         let times = (0..2).map(|axis| {

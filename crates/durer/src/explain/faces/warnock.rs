@@ -10,8 +10,8 @@ use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
 use crate::trace::PseudocodeLine;
-use crate::visibility::polygons::warnock::{INFO, Options, Rule, Step, items};
-use crate::visibility::surface::window::{Relation, SampleRect};
+use crate::visibility::polygons::warnock::{INFO, Options, Step, WindowRule, items};
+use crate::visibility::surface::window::{SampleRect, WindowRelation};
 
 pub(super) const LESSON: Lesson = Lesson {
     name: "warnock",
@@ -92,7 +92,7 @@ struct Windows {
     scene: Scene,
     stack: Vec<SampleRect>,
     now: Option<SampleRect>,
-    relations: Vec<(u32, Relation)>,
+    relations: Vec<(u32, WindowRelation)>,
     decided: Vec<SampleRect>,
 }
 
@@ -123,10 +123,10 @@ impl Windows {
                 self.decided.push(*window);
                 let face = ("face", Value::from(face.map_or(String::new(), name)));
                 match rule {
-                    Rule::Empty => EMPTY.with([]),
-                    Rule::Single => SINGLE.with([face]),
-                    Rule::Surrounded => SURROUNDED.with([face]),
-                    Rule::Pixel => PIXEL.with([face]),
+                    WindowRule::Empty => EMPTY.with([]),
+                    WindowRule::Single => SINGLE.with([face]),
+                    WindowRule::Surrounded => SURROUNDED.with([face]),
+                    WindowRule::Pixel => PIXEL.with([face]),
                 }
             }
             Step::Divide { window, x, y } => {
@@ -148,12 +148,12 @@ impl Windows {
     /// Returns the relations of the polygons to the window in words.
     fn relations(&self) -> Value {
         let word = |relation| match relation {
-            Relation::Outside => Word::new("outside", "außen"),
-            Relation::Inside => Word::new("inside", "innen"),
-            Relation::Crossing => Word::new("crossing", "schneidend"),
-            Relation::Surrounding => Word::new("surrounding", "umgebend"),
+            WindowRelation::Outside => Word::new("outside", "außen"),
+            WindowRelation::Inside => Word::new("inside", "innen"),
+            WindowRelation::Crossing => Word::new("crossing", "schneidend"),
+            WindowRelation::Surrounding => Word::new("surrounding", "umgebend"),
         };
-        let one = |(face, relation): &(u32, Relation)| {
+        let one = |(face, relation): &(u32, WindowRelation)| {
             [Value::from(name(*face)), Value::from(word(*relation))]
         };
         Value::List(self.relations.iter().flat_map(one).collect())

@@ -16,21 +16,21 @@ use crate::{Error, Result};
 
 /// A line of a lesson's pseudocode that a program gets wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fault {
+pub struct LessonFault {
     /// Line of the pseudocode, counted from 1.
     pub line: usize,
     /// The line as the program has it.
     pub wrong: &'static str,
 }
 
-const fn fault(line: usize, wrong: &'static str) -> Fault {
-    Fault { line, wrong }
+const fn fault(line: usize, wrong: &'static str) -> LessonFault {
+    LessonFault { line, wrong }
 }
 
 /// A small program of an algorithm, with the lines that it can get wrong.
 struct Program {
     lesson: &'static str,
-    faults: &'static [Fault],
+    faults: &'static [LessonFault],
     /// Makes the frames of a run with a wrong line, 0 for none.
     frames: fn(&Input, usize, usize) -> Result<Frames>,
 }
@@ -43,7 +43,7 @@ fn program(lesson: &str) -> Option<&'static Program> {
 }
 
 /// Returns the faults that a lesson's program can have; none for lessons without one.
-pub fn faults(lesson: &str) -> &'static [Fault] {
+pub fn faults(lesson: &str) -> &'static [LessonFault] {
     program(lesson).map_or(&[], |program| program.faults)
 }
 
@@ -129,7 +129,7 @@ mod tests {
     fn every_fault_is_seen_on_an_example_and_ends() {
         for program in PROGRAMS {
             let lesson = lesson(program.lesson).unwrap();
-            for Fault { line, wrong } in program.faults {
+            for LessonFault { line, wrong } in program.faults {
                 let place = format!("{} {line}", lesson.name);
                 let right = lesson.info.pseudocode.get(line - 1).unwrap();
                 assert_ne!(right.trim(), *wrong, "{place}");

@@ -2,7 +2,7 @@
 
 use super::{Program, fault};
 use crate::clip::line::liang_barsky::{INFO, Numbers, Step};
-use crate::clip::line::{End, Relation, Segment};
+use crate::clip::line::{End, HalfSpaceRelation, Segment};
 use crate::explain::clip_lines::by_parameters;
 use crate::math::{DVec2, Rect};
 use crate::trace::{Recorder, Tracer};
@@ -48,12 +48,12 @@ fn clip(window: &Rect, segment: Segment<DVec2>, faulty: usize, t: &mut Recorder<
             u2 = Bound { u: r, border };
         }
         let relation = match (q >= 0.0, end >= 0.0) {
-            (true, true) => Relation::Inside,
-            (false, true) => Relation::Entering,
-            (true, false) => Relation::Leaving,
-            (false, false) => Relation::Outside,
+            (true, true) => HalfSpaceRelation::Inside,
+            (false, true) => HalfSpaceRelation::Entering,
+            (true, false) => HalfSpaceRelation::Leaving,
+            (false, false) => HalfSpaceRelation::Outside,
         };
-        outside |= relation == Relation::Outside;
+        outside |= relation == HalfSpaceRelation::Outside;
         let numbers = Numbers { start: q, end, lower: u1.u, upper: u2.u };
         t.step(|| Step::Border { border, relation, numbers });
     }

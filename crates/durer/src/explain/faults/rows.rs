@@ -4,7 +4,7 @@ use super::{Program, fault};
 use crate::curve::Contours;
 use crate::explain::fills::by_rows;
 use crate::raster::coverage::FillRule;
-use crate::raster::polygon::edge_table::{Edge, INFO, Step, row, table};
+use crate::raster::polygon::edge_table::{INFO, Step, TableEdge, row, table};
 use crate::raster::span::Span;
 use crate::sorting::CompactSort;
 use crate::trace::{Recorder, Tracer};
@@ -27,7 +27,7 @@ fn fill(contours: &Contours, [columns, rows]: [u32; 2], faulty: usize, t: &mut R
     let mut waiting = table(contours, rows);
     waiting.compact_sort_by_key(|edge| std::cmp::Reverse(edge.rows.0));
     waiting.iter().rev().for_each(|edge| t.step(|| Step::Table(*edge)));
-    let mut active: Vec<Edge> = Vec::new();
+    let mut active: Vec<TableEdge> = Vec::new();
     let mut y = waiting.last().map_or(0, |edge| edge.rows.0);
     while (y as u32) < rows && !(waiting.is_empty() && active.is_empty()) {
         while let Some(edge) = waiting.pop_if(|edge| edge.rows.0 == y) {
@@ -54,7 +54,7 @@ fn fill(contours: &Contours, [columns, rows]: [u32; 2], faulty: usize, t: &mut R
 }
 
 /// Goes on to the next row.
-fn advance(edge: &mut Edge, faulty: usize) {
+fn advance(edge: &mut TableEdge, faulty: usize) {
     edge.x += edge.step;
     if faulty == 11 {
         return;

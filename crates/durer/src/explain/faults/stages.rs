@@ -3,7 +3,7 @@
 use super::{Program, fault};
 use crate::clip::line::HalfPlane;
 use crate::clip::polygon::sutherland_hodgman::INFO;
-use crate::clip::polygon::sutherland_hodgman::by_borders::{Rule, Step};
+use crate::clip::polygon::sutherland_hodgman::by_borders::{EdgeRule, Step};
 use crate::explain::clip_polygons::by_stages;
 use crate::math::DVec2;
 use crate::trace::{Recorder, Tracer};
@@ -48,17 +48,17 @@ fn past(
     let mut out = Vec::new();
     for &to in list {
         let rule = match (value(from) >= 0.0, value(to) >= 0.0) {
-            (true, true) => Rule::InIn,
-            (true, false) => Rule::InOut,
-            (false, true) => Rule::OutIn,
-            (false, false) => Rule::OutOut,
+            (true, true) => EdgeRule::InIn,
+            (true, false) => EdgeRule::InOut,
+            (false, true) => EdgeRule::OutIn,
+            (false, false) => EdgeRule::OutOut,
         };
         let cut = cut([from, to], [value(from), value(to)]);
         let emitted = match rule {
-            Rule::InIn => [None, Some(if faulty == 4 { from } else { to })],
-            Rule::InOut => [if faulty == 5 { Some(to) } else { cut }, None],
-            Rule::OutIn => [cut, (faulty != 6).then_some(to)],
-            Rule::OutOut => [None, (faulty == 7).then_some(to)],
+            EdgeRule::InIn => [None, Some(if faulty == 4 { from } else { to })],
+            EdgeRule::InOut => [if faulty == 5 { Some(to) } else { cut }, None],
+            EdgeRule::OutIn => [cut, (faulty != 6).then_some(to)],
+            EdgeRule::OutOut => [None, (faulty == 7).then_some(to)],
         };
         out.extend(emitted.into_iter().flatten());
         t.step(|| Step::Edge { border: index, from, to, rule, emitted });

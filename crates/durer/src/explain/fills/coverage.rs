@@ -11,8 +11,8 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
-use crate::raster::coverage::cell_sums::{self, Cell, Step};
-use crate::raster::coverage::{self, Face, PartitionStep};
+use crate::raster::coverage::cell_sums::{self, CellSum, Step};
+use crate::raster::coverage::{self, PartitionFace, PartitionStep};
 use crate::sorting::CompactSort;
 use crate::target::Pixels;
 use crate::trace::PseudocodeLine;
@@ -187,7 +187,7 @@ fn signed([x, y]: [u32; 2]) -> [i32; 2] {
 #[derive(Clone)]
 struct Cells {
     filling: Filling,
-    cells: Vec<([u32; 2], Cell)>,
+    cells: Vec<([u32; 2], CellSum)>,
     pixels: Vec<([u32; 2], u8)>,
 }
 
@@ -326,9 +326,9 @@ fn by_faces(input: &Input, cap: usize) -> Result<Frames> {
     let filling = Filling::new(input)?;
     let face = |(number, ring): (usize, &Vec<DVec2>)| {
         let [r, g, b] = color(number);
-        Face { contours: Contours::polygon(ring.iter().copied()), color: [r, g, b, 255] }
+        PartitionFace { contours: Contours::polygon(ring.iter().copied()), color: [r, g, b, 255] }
     };
-    let faces: Vec<Face> = filling.rings.iter().enumerate().map(face).collect();
+    let faces: Vec<PartitionFace> = filling.rings.iter().enumerate().map(face).collect();
     let mut target = Pixels::new(filling.raster.columns, filling.raster.rows, [255; 4]);
     let steps = record(cap, |t| coverage::fill_partition(&faces, &mut target, t))?;
     let mut areas: Vec<([u32; 2], Areas)> = Vec::new();

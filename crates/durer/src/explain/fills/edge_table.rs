@@ -11,7 +11,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
-use crate::raster::polygon::edge_table::{Edge, INFO, Step, fill};
+use crate::raster::polygon::edge_table::{INFO, Step, TableEdge, fill};
 use crate::trace::{PseudocodeLine, Recorder};
 
 pub(super) const LESSON: Lesson = Lesson {
@@ -55,9 +55,9 @@ static LEAVE: Template = Template::new(
 struct State {
     filling: Filling,
     /// All edges, in the order of the edge table; those that wait are the last ones.
-    edges: Vec<Edge>,
+    edges: Vec<TableEdge>,
     entered: usize,
-    active: Vec<(usize, Edge)>,
+    active: Vec<(usize, TableEdge)>,
     row: i32,
     /// Entries of the active edge table that have come for this row.
     entries: usize,
@@ -124,7 +124,7 @@ impl State {
     }
 
     /// Puts an entry of the row in its place.
-    fn take_active(&mut self, y: i32, edge: Edge) -> Caption {
+    fn take_active(&mut self, y: i32, edge: TableEdge) -> Caption {
         self.entries = if y == self.row { self.entries + 1 } else { 1 };
         self.row = y;
         let place = self.entries - 1;
@@ -194,18 +194,18 @@ impl State {
 }
 
 /// Returns whether two entries are of one edge, in whatever row.
-fn is_same(a: &Edge, b: &Edge) -> bool {
-    let fixed = |e: &Edge| (e.rows, e.step, e.remainder, e.whole, e.winding);
+fn is_same(a: &TableEdge, b: &TableEdge) -> bool {
+    let fixed = |e: &TableEdge| (e.rows, e.step, e.remainder, e.whole, e.winding);
     fixed(a) == fixed(b)
 }
 
 /// Returns y_max, x, Δx/Δy and the accumulator of an edge, the last two in parts of a pixel.
-fn cells(edge: &Edge) -> [Value; 4] {
+fn cells(edge: &TableEdge) -> [Value; 4] {
     let part = edge.error as f64 / edge.whole as f64;
     [edge.rows.1.into(), edge.x.into(), slope(edge).into(), part.into()]
 }
 
 /// Returns the change of an edge's x from row to row.
-fn slope(edge: &Edge) -> f64 {
+fn slope(edge: &TableEdge) -> f64 {
     edge.step as f64 + edge.remainder as f64 / edge.whole as f64
 }

@@ -9,7 +9,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DVec2, IVec2};
-use crate::raster::seed_fill::{self, Run, SeedFill, Step, flood_fill};
+use crate::raster::seed_fill::{self, FillRun, SeedFill, Step, flood_fill};
 use crate::target::Pixels;
 use crate::trace::PseudocodeLine;
 
@@ -125,8 +125,8 @@ fn walls(rows: &[&str], seed: [u32; 2]) -> Input {
 struct State {
     grid: Grid,
     by_pixels: bool,
-    filled: Vec<Run>,
-    stack: Vec<Run>,
+    filled: Vec<FillRun>,
+    stack: Vec<FillRun>,
 }
 
 fn make(method: SeedFill, input: &Input, cap: usize) -> Result<Frames> {
@@ -172,7 +172,7 @@ impl State {
     }
 
     /// Returns a pixel as a point, a run by its columns and row.
-    fn name(&self, run: Run) -> Value {
+    fn name(&self, run: FillRun) -> Value {
         if run.x1 - run.x0 == 1 {
             return DVec2::new(run.x0 as f64, run.y as f64).into();
         }
@@ -192,11 +192,11 @@ impl State {
     fn picture(&self, step: &Step) -> Picture {
         let grid = &self.grid;
         let mut picture = Picture::pixels(grid.columns, grid.rows());
-        let cell = |picture: &mut Picture, run: &Run, look| {
+        let cell = |picture: &mut Picture, run: &FillRun, look| {
             let all = run.x0..run.x1;
             all.for_each(|x| picture.cell([x as i32, run.y as i32], "", look));
         };
-        let inside = |run: &&Run| {
+        let inside = |run: &&FillRun| {
             run.y >= 0 && run.x0 >= 0 && run.y < grid.rows().into() && run.x1 <= grid.columns.into()
         };
         let [x, y] = grid.seed.map(|side| side as usize);

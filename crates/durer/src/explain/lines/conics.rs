@@ -9,7 +9,7 @@ use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DAffine2, IVec2};
-use crate::raster::conic::{self, Region, Step, replay};
+use crate::raster::conic::{self, CurveRegion, Step, replay};
 use crate::trace::PseudocodeLine;
 
 pub(super) const CIRCLE: Lesson = Lesson {
@@ -172,18 +172,18 @@ fn make(circle: bool, input: &Input, cap: usize) -> Result<Frames> {
 
 /// Returns the decision variable: that of an ellipse is kept four times as large, so that it is whole.
 fn decision(step: &Step) -> Value {
-    let parts = if step.region == Region::Octant { 1.0 } else { 4.0 };
+    let parts = if step.region == CurveRegion::Octant { 1.0 } else { 4.0 };
     (step.d as f64 / parts).into()
 }
 
 fn caption(step: &Step, d: Value) -> Caption {
     let template = match (step.region, step.d < 0) {
-        (Region::Octant, true) => &STRAIGHT,
-        (Region::Octant, false) => &ASLANT,
-        (Region::Flat, true) => &FLAT_STRAIGHT,
-        (Region::Flat, false) => &FLAT_ASLANT,
-        (Region::Steep, true) => &STEEP_ASLANT,
-        (Region::Steep, false) => &STEEP_STRAIGHT,
+        (CurveRegion::Octant, true) => &STRAIGHT,
+        (CurveRegion::Octant, false) => &ASLANT,
+        (CurveRegion::Flat, true) => &FLAT_STRAIGHT,
+        (CurveRegion::Flat, false) => &FLAT_ASLANT,
+        (CurveRegion::Steep, true) => &STEEP_ASLANT,
+        (CurveRegion::Steep, false) => &STEEP_STRAIGHT,
     };
     let [x, y] = step.pixel.to_array().map(Value::from);
     template.with([("x", x), ("y", y), ("d", d)])
@@ -205,7 +205,7 @@ fn picture(radii: [u32; 2], done: &[Step]) -> Picture {
     if let Some(step) = done.last() {
         let at = middle + step.pixel;
         picture.cell(at.to_array(), "", Look::Now);
-        let ahead = if step.region == Region::Steep { (0.5, -1.0) } else { (1.0, -0.5) };
+        let ahead = if step.region == CurveRegion::Steep { (0.5, -1.0) } else { (1.0, -0.5) };
         picture.dot(center(at) + crate::math::DVec2::from(ahead), Look::Window);
     }
     picture

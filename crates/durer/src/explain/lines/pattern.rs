@@ -8,7 +8,7 @@ use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Template, Value, Word};
 use crate::math::{DVec2, IVec2};
-use crate::raster::line::pattern::{INFO, Options, Pen, Step, draw, replay};
+use crate::raster::line::pattern::{INFO, Options, PenShape, Step, draw, replay};
 use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
@@ -90,7 +90,7 @@ static UP: Template = Template::new(
 const PATTERN: u16 = 0b0100_1111_0100_1111;
 
 /// Pens of the lines in turn.
-const PENS: [Pen; 3] = [Pen::Replicated(1), Pen::Replicated(3), Pen::Square(3)];
+const PENS: [PenShape; 3] = [PenShape::Replicated(1), PenShape::Replicated(3), PenShape::Square(3)];
 
 /// A straight piece with its options.
 #[derive(Clone)]

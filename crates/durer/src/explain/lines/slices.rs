@@ -9,8 +9,8 @@ use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::IVec2;
-use crate::raster::line::double_step::{self, Pattern};
-use crate::raster::line::run_slice::{self, Run};
+use crate::raster::line::double_step::{self, StepPattern};
+use crate::raster::line::run_slice::{self, RunKind};
 use crate::trace::PseudocodeLine;
 
 pub(super) const RUN_SLICE: Lesson = Lesson {
@@ -143,9 +143,9 @@ fn make_runs(input: &Input, cap: usize) -> Result<Frames> {
         state.lit.push(step.pixels().collect());
         let count = Value::from(state.lit.last().map_or(0, Vec::len));
         let kind = match step.run {
-            Run::First => Word::new("first", "erster"),
-            Run::Short => Word::new("q", "q"),
-            Run::Long => Word::new("q + 1", "q + 1"),
+            RunKind::First => Word::new("first", "erster"),
+            RunKind::Short => Word::new("q", "q"),
+            RunKind::Long => Word::new("q + 1", "q + 1"),
         };
         let row = rows.len().into();
         rows.push([row, step.e.into(), kind.into(), count]);
@@ -165,10 +165,10 @@ fn run_caption(step: &run_slice::Step) -> Caption {
     let [from, to] = step.ends.map(shown);
     let count = step.pixels().count().into();
     let template = match (step.run, step.is_cut) {
-        (Run::First, _) => &FIRST,
+        (RunKind::First, _) => &FIRST,
         (_, true) => &CUT,
-        (Run::Short, false) => &SHORT,
-        (Run::Long, false) => &LONG,
+        (RunKind::Short, false) => &SHORT,
+        (RunKind::Long, false) => &LONG,
     };
     template.with([("count", count), ("from", from), ("to", to), ("e", step.e.into())])
 }
@@ -216,12 +216,12 @@ fn pair_caption(step: &double_step::Step) -> Caption {
             let [first, second] = pixels.map(shown);
             let [d, first, second] = [("d", d.into()), ("first", first), ("second", second)];
             match pattern {
-                Pattern::Straight | Pattern::Aslant => {
+                StepPattern::Straight | StepPattern::Aslant => {
                     let number = ("pattern", u32::from(pattern.number()).into());
                     SIMPLE.with([d, number, first, second])
                 }
-                Pattern::First => BEFORE.with([d, first, second]),
-                Pattern::Second => AFTER.with([d, first, second]),
+                StepPattern::First => BEFORE.with([d, first, second]),
+                StepPattern::Second => AFTER.with([d, first, second]),
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::explain::lesson::{Example, Lesson};
 use crate::explain::picture::{Look, Picture};
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::DVec2;
-use crate::raster::line::wide::{Cap, INFO, Join, Part, Step, Stroke, outline};
+use crate::raster::line::wide::{Cap, INFO, Join, Step, Stroke, StrokePart, outline};
 use crate::trace::PseudocodeLine;
 use crate::{Error, Result};
 
@@ -137,7 +137,7 @@ fn cap_name(cap: Cap) -> Word {
 struct State {
     lines: Vec<Vec<DVec2>>,
     width: f64,
-    rings: Vec<Vec<(DVec2, Part)>>,
+    rings: Vec<Vec<(DVec2, StrokePart)>>,
     rows: Vec<[Value; 3]>,
 }
 
@@ -193,10 +193,10 @@ impl State {
                 let distance = ("distance", vertex.distance(point).into());
                 let (vertex, point) = (("vertex", vertex.into()), ("point", point.into()));
                 match part {
-                    Part::Side => SIDE.with([vertex, point]),
-                    Part::Pivot => PIVOT.with([vertex]),
-                    Part::Join => JOIN.with([vertex, join, point, distance]),
-                    Part::Cap => CAP.with([vertex, cap, point]),
+                    StrokePart::Side => SIDE.with([vertex, point]),
+                    StrokePart::Pivot => PIVOT.with([vertex]),
+                    StrokePart::Join => JOIN.with([vertex, join, point, distance]),
+                    StrokePart::Cap => CAP.with([vertex, cap, point]),
                 }
             }
         }
@@ -217,10 +217,10 @@ impl State {
             picture.chain(points, Look::First);
             for (point, part) in ring {
                 let look = match part {
-                    Part::Side => Look::First,
-                    Part::Pivot => Look::Second,
-                    Part::Join => Look::Result,
-                    Part::Cap => Look::Pale,
+                    StrokePart::Side => Look::First,
+                    StrokePart::Pivot => Look::Second,
+                    StrokePart::Join => Look::Result,
+                    StrokePart::Cap => Look::Pale,
                 };
                 picture.dot(*point, look);
             }
@@ -232,11 +232,11 @@ impl State {
     }
 }
 
-fn part_name(part: Part) -> Word {
+fn part_name(part: StrokePart) -> Word {
     match part {
-        Part::Side => Word::new("side", "Seite"),
-        Part::Pivot => Word::new("corner itself", "Ecke selbst"),
-        Part::Join => Word::new("join", "Verbindung"),
-        Part::Cap => Word::new("cap", "Ende"),
+        StrokePart::Side => Word::new("side", "Seite"),
+        StrokePart::Pivot => Word::new("corner itself", "Ecke selbst"),
+        StrokePart::Join => Word::new("join", "Verbindung"),
+        StrokePart::Cap => Word::new("cap", "Ende"),
     }
 }

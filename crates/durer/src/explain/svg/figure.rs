@@ -3,7 +3,7 @@
 use super::hatch::hatch;
 use super::{TEXT, escaped, short, width};
 use crate::clip::line::{Segment, liang_barsky};
-use crate::explain::picture::{Look, Picture, Shape};
+use crate::explain::picture::{Look, MarkShape, Picture};
 use crate::explain::words::Language;
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
@@ -77,11 +77,11 @@ pub(super) fn draw(picture: &Picture, longest: f64, language: Language) -> Strin
 }
 
 /// Returns the layer that a shape is drawn in, counted from the lowest.
-fn layer_of(shape: &Shape) -> usize {
+fn layer_of(shape: &MarkShape) -> usize {
     match shape {
-        Shape::Cell { .. } => 0,
-        Shape::Label { .. } => 2,
-        Shape::Chain(_) | Shape::Rings(_) | Shape::Dot(_) | Shape::Arrow(_) => 1,
+        MarkShape::Cell { .. } => 0,
+        MarkShape::Label { .. } => 2,
+        MarkShape::Chain(_) | MarkShape::Rings(_) | MarkShape::Dot(_) | MarkShape::Arrow(_) => 1,
     }
 }
 
@@ -157,14 +157,14 @@ impl Pen<'_> {
         );
     }
 
-    fn mark(&mut self, shape: &Shape, look: Look) {
+    fn mark(&mut self, shape: &MarkShape, look: Look) {
         match shape {
-            Shape::Chain(points) => self.stroke(&self.path(points), look, ""),
-            Shape::Rings(rings) => self.area(rings, look),
-            Shape::Dot(p) => self.dot(self.at(*p), look),
-            Shape::Arrow([from, to]) => self.arrow(*from, *to, look),
-            Shape::Label { at, by, text } => self.label(*at, *by, &text.text(self.language)),
-            Shape::Cell { at, color, text } => {
+            MarkShape::Chain(points) => self.stroke(&self.path(points), look, ""),
+            MarkShape::Rings(rings) => self.area(rings, look),
+            MarkShape::Dot(p) => self.dot(self.at(*p), look),
+            MarkShape::Arrow([from, to]) => self.arrow(*from, *to, look),
+            MarkShape::Label { at, by, text } => self.label(*at, *by, &text.text(self.language)),
+            MarkShape::Cell { at, color, text } => {
                 let light = look.style().light.to_owned();
                 let fill = color.map_or(light, |[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}"));
                 let dark =
@@ -302,18 +302,18 @@ impl Pen<'_> {
         let mut is_crossed = false;
         for mark in &self.picture.marks {
             match &mark.shape {
-                Shape::Dot(p) if bounds.contains(self.at(*p)) => return false,
-                Shape::Chain(points) if !is_crossed => {
+                MarkShape::Dot(p) if bounds.contains(self.at(*p)) => return false,
+                MarkShape::Chain(points) if !is_crossed => {
                     is_crossed = points.windows(2).any(|pair| crosses(pair[0], pair[1]));
                 }
-                Shape::Rings(rings) if !is_crossed => {
+                MarkShape::Rings(rings) if !is_crossed => {
                     let sides = |ring: &Vec<DVec2>| {
                         let next = ring.iter().cycle().skip(1);
                         ring.iter().zip(next).any(|(a, b)| crosses(*a, *b))
                     };
                     is_crossed = rings.iter().any(sides);
                 }
-                Shape::Arrow([from, to]) => is_crossed |= crosses(*from, *to),
+                MarkShape::Arrow([from, to]) => is_crossed |= crosses(*from, *to),
                 _ => {}
             }
         }

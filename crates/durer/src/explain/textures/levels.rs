@@ -13,7 +13,7 @@ use crate::math::{DVec2, DVec3, IVec2, Rect, Vec2};
 use crate::raster::interpolate::rows::{Corner, interpolate};
 use crate::raster::interpolate::{barycentric_2d, blend};
 use crate::raster::triangle::Options;
-use crate::scene::{Filter, Image, MipFilter, Sampler, Wrap};
+use crate::scene::{Image, MipFilter, Sampler, TextureFilter, Wrap};
 use crate::shade::texture::{MIP_MAP, Step, Usage};
 use crate::shade::{PreparedTexture, TexCoord};
 use crate::trace::{NoTrace, PseudocodeLine, Tracer};
@@ -199,8 +199,8 @@ fn make(input: &Input, cap: usize) -> Result<Frames> {
 
 /// Bilinear within levels, linear between them.
 const SAMPLER: Sampler = Sampler {
-    mag: Filter::Linear,
-    min: Filter::Linear,
+    mag: TextureFilter::Linear,
+    min: TextureFilter::Linear,
     mip: MipFilter::Linear,
     wrap_u: Wrap::Repeat,
     wrap_v: Wrap::Repeat,

@@ -10,7 +10,7 @@ use crate::explain::picture::{Look, Picture};
 use crate::explain::table::Table;
 use crate::explain::words::{Caption, Template, Value, Word};
 use crate::math::{DAffine2, DVec2, Rect, Vec2};
-use crate::scene::{Filter, MipFilter, Sampler, Wrap};
+use crate::scene::{MipFilter, Sampler, TextureFilter, Wrap};
 use crate::shade::PreparedTexture;
 use crate::shade::texture::{INFO, Step, Usage, weights};
 use crate::trace::PseudocodeLine;
@@ -94,19 +94,19 @@ const FIFTHS: [[u8; 4]; 4] = [[0, 1, 2, 3], [4, 5, 4, 3], [1, 0, 5, 2], [3, 2, 1
 const SIDE: i32 = 4;
 
 /// The samplers, in the order of their runs.
-const SAMPLERS: [(Filter, Wrap); 6] = [
-    (Filter::Nearest, Wrap::Repeat),
-    (Filter::Nearest, Wrap::MirroredRepeat),
-    (Filter::Nearest, Wrap::ClampToEdge),
-    (Filter::Linear, Wrap::Repeat),
-    (Filter::Linear, Wrap::MirroredRepeat),
-    (Filter::Linear, Wrap::ClampToEdge),
+const SAMPLERS: [(TextureFilter, Wrap); 6] = [
+    (TextureFilter::Nearest, Wrap::Repeat),
+    (TextureFilter::Nearest, Wrap::MirroredRepeat),
+    (TextureFilter::Nearest, Wrap::ClampToEdge),
+    (TextureFilter::Linear, Wrap::Repeat),
+    (TextureFilter::Linear, Wrap::MirroredRepeat),
+    (TextureFilter::Linear, Wrap::ClampToEdge),
 ];
 
-const fn filter_name(filter: Filter) -> Word {
+const fn filter_name(filter: TextureFilter) -> Word {
     match filter {
-        Filter::Nearest => Word::new("Nearest texel", "Nächstes Texel"),
-        Filter::Linear => Word::new("Bilinear", "Bilinear"),
+        TextureFilter::Nearest => Word::new("Nearest texel", "Nächstes Texel"),
+        TextureFilter::Linear => Word::new("Bilinear", "Bilinear"),
     }
 }
 
@@ -243,7 +243,7 @@ impl State {
                 picture.arrow(at, to, Look::Second);
             }
         }
-        let look = if filter == Filter::Nearest { Look::First } else { Look::Second };
+        let look = if filter == TextureFilter::Nearest { Look::First } else { Look::Second };
         picture.dot(at, look);
         picture
     }

@@ -47,8 +47,9 @@ pub(super) fn cut(of: &ViewBreak, drawing: Drawing) -> Result<Drawing> {
             kept.regions.extend(side.region(region, &bounds)?);
         }
         let labels = drawing.labels.iter().filter(|l| side.off(l.at) > 0.0).cloned();
-        kept.labels
-            .extend(labels.map(|l| crate::target::drawing::Label { at: side.moved(l.at), ..l }));
+        kept.labels.extend(
+            labels.map(|l| crate::target::drawing::TextLabel { at: side.moved(l.at), ..l }),
+        );
         if span.is_some() {
             kept.lines.push(side.break_line());
             kept.nearness.extend(drawing.nearness.first().map(|_| None));

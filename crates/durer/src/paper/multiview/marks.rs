@@ -3,8 +3,8 @@
 use super::SheetView;
 use crate::math::DVec2;
 use crate::paper::{Options, PlacedView, pen_index, scale_text, text_pen};
-use crate::target::drawing::Anchor;
-use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use crate::target::drawing::TextAnchor;
+use crate::target::sheet::{PaperMark, Pen, Sheet, SheetLayer};
 
 /// Height of the letters of titles and references, millimetres: larger than all other text (ISO 128-3).
 pub const LETTER: f64 = 5.0;
@@ -28,7 +28,7 @@ const AROUND: u32 = 96;
 pub struct Annotator<'a> {
     sheet: &'a mut Sheet,
     options: &'a Options,
-    marks: Vec<Mark>,
+    marks: Vec<PaperMark>,
 }
 
 impl<'a> Annotator<'a> {
@@ -53,7 +53,7 @@ impl<'a> Annotator<'a> {
         if points.iter().all(|p| p.is_finite()) {
             let pen = Pen { width, color: self.options.pens.color, dashes: dashes.to_vec() };
             let pen = pen_index(self.sheet, pen);
-            self.marks.push(Mark::Stroke { points, closed, pen });
+            self.marks.push(PaperMark::Stroke { points, closed, pen });
         }
     }
 
@@ -69,7 +69,7 @@ impl<'a> Annotator<'a> {
 
     fn fill(&mut self, ring: Vec<DVec2>) {
         if ring.iter().all(|p| p.is_finite()) {
-            self.marks.push(Mark::Fill {
+            self.marks.push(PaperMark::Fill {
                 rings: vec![ring],
                 color: self.options.pens.color,
                 even_odd: false,
@@ -96,14 +96,14 @@ impl<'a> Annotator<'a> {
 
     /// Writes letters whose middle is at a place.
     pub fn letters(&mut self, middle: DVec2, text: &str, height: f64) {
-        self.text(middle + DVec2::new(0.0, height * 0.5), text, height, Anchor::Middle);
+        self.text(middle + DVec2::new(0.0, height * 0.5), text, height, TextAnchor::Middle);
     }
 
     /// Writes letters on a base line.
-    pub fn text(&mut self, at: DVec2, text: &str, height: f64, anchor: Anchor) {
+    pub fn text(&mut self, at: DVec2, text: &str, height: f64, anchor: TextAnchor) {
         if at.is_finite() {
             let pen = text_pen(self.sheet, height, self.options);
-            self.marks.push(Mark::Text { at, text: text.to_owned(), height, anchor, pen });
+            self.marks.push(PaperMark::Text { at, text: text.to_owned(), height, anchor, pen });
         }
     }
 }
@@ -135,7 +135,7 @@ pub fn put_titles(
             if same { place.name.clone() } else { format!("{} ({})", place.name, scale_text(own)) };
         let (min, max) = (place.bounds.min(), place.bounds.max());
         let at = DVec2::new((min.x + max.x) * 0.5, min.y - TITLE_GAP);
-        annotator.text(at, &title, LETTER, Anchor::Middle);
+        annotator.text(at, &title, LETTER, TextAnchor::Middle);
     }
     annotator.end_layer("view-titles");
 }

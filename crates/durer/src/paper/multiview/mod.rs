@@ -15,7 +15,7 @@ pub use detail::Detail;
 pub use parts_list::PartsListRow;
 
 use super::title_block::{self, TitleBlock};
-use super::{Frame, LaidOut, Options, Placed, PlacedView, ViewBreaks, frame_of, put};
+use super::{LaidOut, Options, PaperFrame, Placed, PlacedView, ViewBreaks, frame_of, put};
 use crate::Result;
 use crate::math::{Plane, Rect};
 use crate::scene::Camera;
@@ -81,7 +81,7 @@ impl SheetView<'_> {
     fn bounds(&self) -> Rect {
         match &self.kind {
             ViewKind::Detail(detail) => detail.bounds(),
-            _ => frame_of(self.drawing, Frame::Content),
+            _ => frame_of(self.drawing, PaperFrame::Content),
         }
     }
 

@@ -4,7 +4,7 @@ use super::marks::{Annotator, THICK, THIN};
 use crate::curve::stroke_font;
 use crate::math::DVec2;
 use crate::paper::title_block;
-use crate::target::drawing::Anchor;
+use crate::target::drawing::TextAnchor;
 
 /// A row of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,16 +72,19 @@ pub fn put(annotator: &mut Annotator, rows: &[PartsListRow], shape: &Shape, corn
     for (block, rows) in rows.chunks(shape.rows.max(1)).enumerate() {
         let right = corner.x - (shape.blocks - 1).saturating_sub(block) as f64 * shape.width;
         let left = right - shape.width;
-        let texts =
-            |y: f64, number: &str, name: &str, quantity: &str, annotator: &mut Annotator| {
-                let base = y - (ROW - TEXT) * 0.5;
-                let room = shape.width - 2.0 * NUMBER - 2.0 * PAD;
-                let middle = NUMBER * 0.5;
-                annotator.text(DVec2::new(left + middle, base), number, TEXT, Anchor::Middle);
-                let at = DVec2::new(left + NUMBER + PAD, base);
-                annotator.text(at, name, title_block::fitted(name, TEXT, room), Anchor::Start);
-                annotator.text(DVec2::new(right - middle, base), quantity, TEXT, Anchor::Middle);
-            };
+        let texts = |y: f64,
+                     number: &str,
+                     name: &str,
+                     quantity: &str,
+                     annotator: &mut Annotator| {
+            let base = y - (ROW - TEXT) * 0.5;
+            let room = shape.width - 2.0 * NUMBER - 2.0 * PAD;
+            let middle = NUMBER * 0.5;
+            annotator.text(DVec2::new(left + middle, base), number, TEXT, TextAnchor::Middle);
+            let at = DVec2::new(left + NUMBER + PAD, base);
+            annotator.text(at, name, title_block::fitted(name, TEXT, room), TextAnchor::Start);
+            annotator.text(DVec2::new(right - middle, base), quantity, TEXT, TextAnchor::Middle);
+        };
         texts(corner.y, "ITEM", "NAME", "QTY", annotator);
         for (i, row) in rows.iter().enumerate() {
             let y = corner.y - (i as f64 + 1.0) * ROW;

@@ -1,9 +1,9 @@
 //! Marks that a pen draws without being lifted, straight or curved.
 
-use super::{JOIN, Stroke, turns};
+use super::{JOIN, PenStroke, turns};
 use crate::math::DVec2;
-use crate::target::sheet::Mark;
-use crate::target::{Arc, Curve, Piece};
+use crate::target::sheet::PaperMark;
+use crate::target::{Curve, CurvePiece, EllipticArc};
 
 /// Places at which a whole circle or ellipse may be begun.
 const PLACES: usize = 16;
@@ -12,14 +12,14 @@ const PLACES: usize = 16;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Chain {
     /// Straight pieces.
-    Straight(Stroke),
+    Straight(PenStroke),
     /// Lines and curves.
     Curved(Curve),
 }
 
 impl Chain {
     /// Returns the points at which it may be begun.
-    fn places(&self) -> Stroke {
+    fn places(&self) -> PenStroke {
         match self {
             Self::Straight(stroke) => stroke.clone(),
             Self::Curved(curve) => {
@@ -27,7 +27,7 @@ impl Chain {
                     Some(arc) => (0..PLACES).map(|i| arc.at(angle(arc, i))).collect(),
                     None => curve.iter().map(|(start, _)| start).collect(),
                 };
-                let mut stroke = Stroke { points, closed: curve.closed };
+                let mut stroke = PenStroke { points, closed: curve.closed };
                 if !curve.closed {
                     stroke.points.push(curve.end());
                 }
@@ -44,9 +44,9 @@ impl Chain {
             Self::Curved(curve) if !curve.closed => Self::Curved(curve.reversed()),
             Self::Curved(mut curve) => {
                 if let Some(arc) = curve.whole().copied() {
-                    let arc = Arc { start: angle(&arc, first), ..arc };
+                    let arc = EllipticArc { start: angle(&arc, first), ..arc };
                     curve.start = arc.at(arc.start);
-                    curve.pieces = vec![Piece::Arc(arc, curve.start)];
+                    curve.pieces = vec![CurvePiece::Arc(arc, curve.start)];
                 } else if let Some(before) = curve.pieces.get(first - 1) {
                     curve.start = before.end();
                     curve.pieces.rotate_left(first);
@@ -68,35 +68,37 @@ impl Chain {
     fn open(self) -> Result<Curve, Self> {
         match self {
             Self::Curved(curve) if !curve.closed => Ok(curve),
-            Self::Straight(Stroke { points, closed: false }) if points.len() > 1 => {
-                let pieces = points[1..].iter().map(|p| Piece::Line(*p)).collect();
+            Self::Straight(PenStroke { points, closed: false }) if points.len() > 1 => {
+                let pieces = points[1..].iter().map(|p| CurvePiece::Line(*p)).collect();
                 Ok(Curve { start: points[0], pieces, closed: false })
             }
             other => Err(other),
         }
     }
 
-    pub(super) fn mark(self, pen: usize) -> Mark {
+    pub(super) fn mark(self, pen: usize) -> PaperMark {
         match self {
-            Self::Straight(Stroke { points, closed }) => Mark::Stroke { points, closed, pen },
-            Self::Curved(curve) if curve.is_straight() && !curve.closed => {
-                let rest = curve.pieces.iter().map(Piece::end);
-                let points = std::iter::once(curve.start).chain(rest).collect();
-                Mark::Stroke { points, closed: false, pen }
+            Self::Straight(PenStroke { points, closed }) => {
+                PaperMark::Stroke { points, closed, pen }
             }
-            Self::Curved(curve) => Mark::Curve { curve, pen },
+            Self::Curved(curve) if curve.is_straight() && !curve.closed => {
+                let rest = curve.pieces.iter().map(CurvePiece::end);
+                let points = std::iter::once(curve.start).chain(rest).collect();
+                PaperMark::Stroke { points, closed: false, pen }
+            }
+            Self::Curved(curve) => PaperMark::Curve { curve, pen },
         }
     }
 }
 
 /// Returns the angle of a place of a whole ellipse.
-fn angle(arc: &Arc, place: usize) -> f64 {
+fn angle(arc: &EllipticArc, place: usize) -> f64 {
     arc.start + arc.turn * (place as f64 / PLACES as f64)
 }
 
 /// Puts chains in the order of [`turns`].
 pub(super) fn in_turn(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
-    let places: Vec<Stroke> = chains.iter().map(Chain::places).collect();
+    let places: Vec<PenStroke> = chains.iter().map(Chain::places).collect();
     let mut chains: Vec<Option<Chain>> = chains.into_iter().map(Some).collect();
     let turns = turns(&places, start).into_iter();
     turns.filter_map(|t| Some(chains.get_mut(t.index)?.take()?.begun_at(t.first))).collect()
@@ -110,7 +112,7 @@ pub(super) fn joined(chains: Vec<Chain>) -> Vec<Chain> {
         match (chain.open(), &mut last) {
             (Ok(next), Some(last)) if last.end().distance(next.start) <= JOIN => {
                 if last.end() != next.start {
-                    last.pieces.push(Piece::Line(next.start));
+                    last.pieces.push(CurvePiece::Line(next.start));
                 }
                 last.pieces.extend(next.pieces);
             }

@@ -2,7 +2,7 @@
 
 use super::greedy::other_end;
 use super::nearest::{Nearest, Tree};
-use super::{Stroke, Turn};
+use super::{OrderedStroke, PenStroke};
 use crate::math::DVec2;
 
 /// One end of a stroke: twice its place in the list, and 1 more for its end.
@@ -13,7 +13,7 @@ const NEIGHBORS: usize = 10;
 
 /// The ends of strokes; the last of them is the pen's home, from which it starts.
 pub struct Ends {
-    turns: Vec<Turn>,
+    turns: Vec<OrderedStroke>,
     /// Points by end.
     points: Vec<DVec2>,
     /// The nearest ends of other strokes, up to this many an end, the nearest first.
@@ -24,9 +24,9 @@ pub struct Ends {
 
 impl Ends {
     /// Creates the ends of strokes as they are drawn first.
-    pub fn new(strokes: &[Stroke], turns: &[Turn], home: DVec2) -> Self {
+    pub fn new(strokes: &[PenStroke], turns: &[OrderedStroke], home: DVec2) -> Self {
         let finite = |p: DVec2| if p.is_finite() { p } else { home };
-        let both = |turn: &Turn| {
+        let both = |turn: &OrderedStroke| {
             let stroke = &strokes[turn.index];
             [stroke.points[turn.first], other_end(stroke, turn.first)].map(finite)
         };
@@ -67,19 +67,19 @@ impl Ends {
     }
 
     /// Returns the turn that begins at an end; `None` for home.
-    pub fn turn(&self, end: End, strokes: &[Stroke]) -> Option<Turn> {
+    pub fn turn(&self, end: End, strokes: &[PenStroke]) -> Option<OrderedStroke> {
         let turn = *self.turns.get(end as usize / 2)?;
         let stroke = &strokes[turn.index];
         if end.is_multiple_of(2) || stroke.closed {
             return Some(turn);
         }
         let first = if turn.first == 0 { stroke.points.len() - 1 } else { 0 };
-        Some(Turn { first, ..turn })
+        Some(OrderedStroke { first, ..turn })
     }
 
     /// Rotates closed strokes to begin where the path past them is shortest, given all strokes as a cycle of the ends
     /// at which they are entered. Returns whether the path became shorter.
-    pub fn turn_rings(&mut self, strokes: &[Stroke], sequence: &[End]) -> bool {
+    pub fn turn_rings(&mut self, strokes: &[PenStroke], sequence: &[End]) -> bool {
         let (count, mut shorter) = (sequence.len(), false);
         for (i, &end) in sequence.iter().enumerate() {
             let Some(turn) = self.turns.get(end as usize / 2).copied() else { continue };
@@ -103,7 +103,7 @@ impl Ends {
     }
 
     /// Returns the point of a closed stroke with the shortest path from end to end, if that is shorter than by `now`.
-    fn best_first(&self, stroke: &Stroke, now: usize, before: End, after: End) -> Option<usize> {
+    fn best_first(&self, stroke: &PenStroke, now: usize, before: End, after: End) -> Option<usize> {
         let back = self.points.len() as End - 2;
         let way = |p: DVec2| {
             let to =

@@ -14,7 +14,7 @@ mod improve;
 pub(crate) mod nearest;
 
 use crate::math::DVec2;
-use crate::target::sheet::{Mark, Sheet};
+use crate::target::sheet::{PaperMark, Sheet};
 pub use chain::Chain;
 use ends::Ends;
 
@@ -27,7 +27,7 @@ const ROUNDS: usize = 4;
 
 /// A chain that a pen draws without being lifted.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Stroke {
+pub struct PenStroke {
     /// Its points, millimetres.
     pub points: Vec<DVec2>,
     /// True if it returns to the first point, which is not repeated.
@@ -36,14 +36,14 @@ pub struct Stroke {
 
 /// A stroke in the order of drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Turn {
+pub struct OrderedStroke {
     /// Index of the stroke.
     pub index: usize,
     /// The point that it is begun at: of open strokes the first or the last.
     pub first: usize,
 }
 
-impl Stroke {
+impl PenStroke {
     /// Returns the stroke, begun at one of its points.
     fn begun_at(mut self, first: usize) -> Self {
         if self.closed {
@@ -67,12 +67,12 @@ impl Stroke {
 ///
 /// ```
 /// use durer::math::DVec2;
-/// use durer::paper::order::{Stroke, Turn, turns};
+/// use durer::paper::order::{PenStroke, OrderedStroke, turns};
 /// let along = |a: f64, b: f64| Stroke { points: vec![DVec2::new(a, 0.0), DVec2::new(b, 0.0)], closed: false };
 /// let order = turns(&[along(20.0, 11.0), along(0.0, 10.0)], DVec2::ZERO);
 /// assert_eq!(order, [Turn { index: 1, first: 0 }, Turn { index: 0, first: 1 }]);
 /// ```
-pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
+pub fn turns(strokes: &[PenStroke], start: DVec2) -> Vec<OrderedStroke> {
     let found = greedy::turns(strokes, start);
     let mut ends = Ends::new(strokes, &found, start);
     let mut way = improve::Way::new(found.len());
@@ -98,7 +98,7 @@ pub fn sheet(sheet: &mut Sheet) {
     let solid: Vec<bool> = sheet.pens.iter().map(|p| p.dashes.is_empty()).collect();
     let mut at = DVec2::ZERO;
     for layer in &mut sheet.layers {
-        if layer.marks.iter().any(Mark::is_area) {
+        if layer.marks.iter().any(PaperMark::is_area) {
             continue;
         }
         let mut pens = ByPen::default();
@@ -116,22 +116,25 @@ pub fn sheet(sheet: &mut Sheet) {
 
 /// The strokes and texts of a layer by the pens that draw them, in the order of their first marks.
 #[derive(Default)]
-struct ByPen(Vec<(usize, Vec<Chain>, Vec<Mark>)>);
+struct ByPen(Vec<(usize, Vec<Chain>, Vec<PaperMark>)>);
 
 impl ByPen {
-    fn add(&mut self, mark: Mark) {
+    fn add(&mut self, mark: PaperMark) {
         match mark {
-            Mark::Stroke { points, closed, pen } => {
-                self.of(pen).1.push(Chain::Straight(Stroke { points, closed }));
+            PaperMark::Stroke { points, closed, pen } => {
+                self.of(pen).1.push(Chain::Straight(PenStroke { points, closed }));
             }
-            Mark::Curve { curve, pen } => self.of(pen).1.push(Chain::Curved(curve)),
-            Mark::Text { pen, .. } => self.of(pen).2.push(mark),
-            Mark::Dimension(ref dimension) => self.of(dimension.text.pen).2.push(mark),
-            Mark::Fill { .. } | Mark::Area { .. } | Mark::Gradient(_) | Mark::Group(_) => {}
+            PaperMark::Curve { curve, pen } => self.of(pen).1.push(Chain::Curved(curve)),
+            PaperMark::Text { pen, .. } => self.of(pen).2.push(mark),
+            PaperMark::Dimension(ref dimension) => self.of(dimension.text.pen).2.push(mark),
+            PaperMark::Fill { .. }
+            | PaperMark::Area { .. }
+            | PaperMark::Gradient(_)
+            | PaperMark::Group(_) => {}
         }
     }
 
-    fn of(&mut self, pen: usize) -> &mut (usize, Vec<Chain>, Vec<Mark>) {
+    fn of(&mut self, pen: usize) -> &mut (usize, Vec<Chain>, Vec<PaperMark>) {
         let index = self.0.iter().position(|p| p.0 == pen).unwrap_or(self.0.len());
         if index == self.0.len() {
             self.0.push((pen, Vec::new(), Vec::new()));
@@ -141,16 +144,18 @@ impl ByPen {
 }
 
 /// Sorts texts for short moves from one beginning to the next.
-fn texts_in_turn(texts: Vec<Mark>, at: &mut DVec2) -> Vec<Mark> {
-    let place = |mark: &Mark| match mark {
-        Mark::Text { at, .. } => Stroke { points: vec![*at], closed: true },
-        Mark::Dimension(dimension) => Stroke { points: vec![dimension.text.at], closed: true },
-        _ => Stroke::default(),
+fn texts_in_turn(texts: Vec<PaperMark>, at: &mut DVec2) -> Vec<PaperMark> {
+    let place = |mark: &PaperMark| match mark {
+        PaperMark::Text { at, .. } => PenStroke { points: vec![*at], closed: true },
+        PaperMark::Dimension(dimension) => {
+            PenStroke { points: vec![dimension.text.at], closed: true }
+        }
+        _ => PenStroke::default(),
     };
-    let places: Vec<Stroke> = texts.iter().map(place).collect();
+    let places: Vec<PenStroke> = texts.iter().map(place).collect();
     let turns = turns(&places, *at);
     let last = turns.last().and_then(|t| places.get(t.index));
-    *at = last.and_then(Stroke::end).unwrap_or(*at);
+    *at = last.and_then(PenStroke::end).unwrap_or(*at);
     turns.into_iter().filter_map(|t| texts.get(t.index).cloned()).collect()
 }
 

@@ -1,17 +1,17 @@
 use super::*;
-use crate::target::drawing::Anchor;
+use crate::target::drawing::TextAnchor;
 use crate::target::sheet::{Pen, SheetLayer};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
     list.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
 }
 
-fn open(list: &[(f64, f64)]) -> Stroke {
-    Stroke { points: points(list), closed: false }
+fn open(list: &[(f64, f64)]) -> PenStroke {
+    PenStroke { points: points(list), closed: false }
 }
 
-fn ring(list: &[(f64, f64)]) -> Stroke {
-    Stroke { points: points(list), closed: true }
+fn ring(list: &[(f64, f64)]) -> PenStroke {
+    PenStroke { points: points(list), closed: true }
 }
 
 /// Returns random numbers from 0 to 1 (Knuth's linear congruences).
@@ -25,38 +25,38 @@ fn random() -> impl FnMut() -> f64 {
 }
 
 /// Creates short strokes, every fifth of them a square, all over a sheet of 100 × 100.
-pub fn scattered(count: usize) -> Vec<Stroke> {
+pub fn scattered(count: usize) -> Vec<PenStroke> {
     let mut random = random();
     let mut stroke = |i: usize| {
         let at = DVec2::new(random(), random()) * 100.0;
         let side = DVec2::new(random() - 0.5, random() - 0.5);
         if i.is_multiple_of(5) {
             let corners = [at, at + side, at + side + side.perp(), at + side.perp()];
-            return Stroke { points: corners.to_vec(), closed: true };
+            return PenStroke { points: corners.to_vec(), closed: true };
         }
-        Stroke { points: vec![at, at + side], closed: false }
+        PenStroke { points: vec![at, at + side], closed: false }
     };
     (0..count).map(&mut stroke).collect()
 }
 
 /// Orders strokes and joins them, all of straight lines.
-fn ordered(strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
+fn ordered(strokes: Vec<PenStroke>, start: DVec2) -> Vec<PenStroke> {
     let chains = strokes.into_iter().map(Chain::Straight).collect();
     let stroke = |chain| match chain {
         Chain::Straight(stroke) => stroke,
         Chain::Curved(curve) => {
             let ends = curve.pieces.iter().map(|piece| piece.end());
             let points = std::iter::once(curve.start).chain(ends).collect();
-            Stroke { points, closed: curve.closed }
+            PenStroke { points, closed: curve.closed }
         }
     };
     ordered_chains(chains, start).into_iter().map(stroke).collect()
 }
 
 /// Returns the length of pen-up moves between strokes in drawing order.
-fn way(strokes: &[Stroke], turns: &[Turn], start: DVec2) -> f64 {
+fn way(strokes: &[PenStroke], turns: &[OrderedStroke], start: DVec2) -> f64 {
     let mut at = start;
-    let mut step = |turn: &Turn| {
+    let mut step = |turn: &OrderedStroke| {
         let stroke = strokes[turn.index].clone().begun_at(turn.first);
         let length = at.distance(stroke.points[0]);
         at = stroke.end().expect("points");
@@ -74,7 +74,7 @@ fn every_stroke_is_drawn_once_and_the_way_is_much_shorter_than_the_greedy_one() 
     drawn.sort_unstable();
     assert!(drawn.into_iter().eq(0..2000));
     for turn in &found {
-        let Stroke { points, closed } = &strokes[turn.index];
+        let PenStroke { points, closed } = &strokes[turn.index];
         assert!(*closed || [0, points.len() - 1].contains(&turn.first), "{turn:?}");
     }
     let greedy = way(&strokes, &greedy::turns(&strokes, start), start);
@@ -90,7 +90,7 @@ fn strokes_in_a_row_are_drawn_in_a_row_whichever_way_they_run() {
     // 0, 99, 198, 97, …: shuffled, and every other one reversed.
     let shuffled = (0..count).map(|i| (i * 99) % count);
     let ends = shuffled.map(|i| if i % 2 == 0 { [at(i), at(i + 1)] } else { [at(i + 1), at(i)] });
-    let strokes: Vec<Stroke> = ends.map(|e| open(&e)).collect();
+    let strokes: Vec<PenStroke> = ends.map(|e| open(&e)).collect();
     let one = ordered(strokes, DVec2::new(-3.0, 0.0));
     let all: Vec<(f64, f64)> = (0..=count).map(at).collect();
     assert_eq!(one, [open(&all)]);
@@ -113,8 +113,8 @@ fn what_has_no_sense_is_no_trouble() {
     let start = DVec2::ZERO;
     assert_eq!(turns(&[], start), []);
     assert_eq!(
-        turns(&[Stroke::default(), open(&[(1.0, 1.0)])], start),
-        [Turn { index: 1, first: 0 }]
+        turns(&[PenStroke::default(), open(&[(1.0, 1.0)])], start),
+        [OrderedStroke { index: 1, first: 0 }]
     );
     let far = f64::MAX;
     let strokes = [
@@ -127,7 +127,7 @@ fn what_has_no_sense_is_no_trouble() {
         assert_eq!(turns(&strokes, start).len(), 4);
     }
     // All in one place.
-    let same: Vec<Stroke> = (0..5000).map(|_| open(&[(1.0, 1.0), (1.0, 1.0)])).collect();
+    let same: Vec<PenStroke> = (0..5000).map(|_| open(&[(1.0, 1.0), (1.0, 1.0)])).collect();
     assert_eq!(ordered(same, start).len(), 1);
 }
 
@@ -135,12 +135,12 @@ fn what_has_no_sense_is_no_trouble() {
 fn sheets_keep_layers_texts_dashes_and_what_covers_what() {
     let pen = |dashes| Pen { width: 0.5, color: [0, 0, 0, 255], dashes };
     let stroke =
-        |list: &[(f64, f64)], pen| Mark::Stroke { points: points(list), closed: false, pen };
+        |list: &[(f64, f64)], pen| PaperMark::Stroke { points: points(list), closed: false, pen };
     let text = |x: f64| {
-        let (at, text, anchor) = (DVec2::new(x, 5.0), x.to_string(), Anchor::Start);
-        Mark::Text { at, text, height: 2.0, anchor, pen: 0 }
+        let (at, text, anchor) = (DVec2::new(x, 5.0), x.to_string(), TextAnchor::Start);
+        PaperMark::Text { at, text, height: 2.0, anchor, pen: 0 }
     };
-    let fill = Mark::Fill {
+    let fill = PaperMark::Fill {
         rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
         color: [9; 4],
         even_odd: false,
@@ -148,8 +148,8 @@ fn sheets_keep_layers_texts_dashes_and_what_covers_what() {
     let lines = [[(30.0, 0.0), (20.0, 0.0)], [(0.0, 0.0), (10.0, 0.0)], [(20.0, 0.0), (10.0, 0.0)]];
     let of = |pen: usize| lines.iter().map(move |l| stroke(l, pen));
     let mixed = of(0).zip(of(1)).flat_map(|(a, b)| [a, b]).chain([text(9.0), text(28.0)]).collect();
-    let covered: Vec<Mark> = of(0).chain([fill]).chain(of(1)).collect();
-    let layer = |marks: Vec<Mark>| SheetLayer { name: "layer".to_owned(), marks };
+    let covered: Vec<PaperMark> = of(0).chain([fill]).chain(of(1)).collect();
+    let layer = |marks: Vec<PaperMark>| SheetLayer { name: "layer".to_owned(), marks };
     let mut found = Sheet {
         pens: vec![pen(Vec::new()), pen(vec![3.0, 1.0])],
         layers: vec![layer(covered.clone()), layer(mixed)],

@@ -2,7 +2,7 @@
 
 use crate::curve::{Path, PathElement};
 use crate::math::{DVec2, Rect};
-use crate::target::{Curve, Piece};
+use crate::target::{Curve, CurvePiece};
 
 /// Returns the contours of a path that have an extent, all of them closed where areas are meant.
 pub(super) fn contours(path: &Path, areas: bool) -> Vec<Curve> {
@@ -12,11 +12,11 @@ pub(super) fn contours(path: &Path, areas: bool) -> Vec<Curve> {
         let Some(mut curve) = open.take().filter(|curve| !curve.pieces.is_empty()) else { return };
         if closes || areas {
             if curve.end() != curve.start {
-                curve.pieces.push(Piece::Line(curve.start));
+                curve.pieces.push(CurvePiece::Line(curve.start));
             }
             curve.closed = true;
         }
-        let points = curve.pieces.iter().map(Piece::end).chain([curve.start]);
+        let points = curve.pieces.iter().map(CurvePiece::end).chain([curve.start]);
         if points.into_iter().all(DVec2::is_finite) {
             found.push(curve);
         }
@@ -34,12 +34,12 @@ pub(super) fn contours(path: &Path, areas: bool) -> Vec<Curve> {
                 end(&mut open, true);
                 continue;
             }
-            PathElement::LineTo(p) => Piece::Line(p),
+            PathElement::LineTo(p) => CurvePiece::Line(p),
             PathElement::QuadTo(c, p) => {
                 let from = open.as_ref().map_or(start, Curve::end);
-                Piece::Cubic(from.lerp(c, 2.0 / 3.0), p.lerp(c, 2.0 / 3.0), p)
+                CurvePiece::Cubic(from.lerp(c, 2.0 / 3.0), p.lerp(c, 2.0 / 3.0), p)
             }
-            PathElement::CubicTo(a, b, p) => Piece::Cubic(a, b, p),
+            PathElement::CubicTo(a, b, p) => CurvePiece::Cubic(a, b, p),
         };
         // After its end, a contour continues at its start.
         let curve = open.get_or_insert(Curve { start, pieces: Vec::new(), closed: false });
@@ -52,7 +52,7 @@ pub(super) fn contours(path: &Path, areas: bool) -> Vec<Curve> {
 /// Returns the points of a straight curve; of a closed one, the first is not repeated.
 pub(super) fn corners(curve: &Curve) -> Vec<DVec2> {
     let mut points: Vec<DVec2> =
-        std::iter::once(curve.start).chain(curve.pieces.iter().map(Piece::end)).collect();
+        std::iter::once(curve.start).chain(curve.pieces.iter().map(CurvePiece::end)).collect();
     if curve.closed && points.len() > 1 {
         points.pop();
     }

@@ -9,10 +9,10 @@ use crate::curve::{Path, flatten, pieces};
 use crate::math::{DAffine2, DVec2, Rect};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{self, Cap, Join, Stroke};
-use crate::raster::paint::{Blend, MaskKind, Options, Paint, PaintTarget};
+use crate::raster::paint::{BlendFunction, MaskKind, Options, Paint, PaintTarget};
 use crate::target::gradient::{Gradient, scale_of};
-use crate::target::sheet::{ClipPath, GradientArea, Mark, MarkGroup, Pen, Sheet, SheetLayer};
-use crate::target::{Curve, Piece};
+use crate::target::sheet::{ClipPath, GradientArea, MarkGroup, PaperMark, Pen, Sheet, SheetLayer};
+use crate::target::{Curve, CurvePiece};
 use crate::trace::NoTrace;
 use crate::work::Work;
 use contours::{contours, corners, upright};
@@ -54,7 +54,7 @@ pub struct SheetPainter {
     work: Work,
     paper_from_path: DAffine2,
     /// The marks of the current layer that are in no open clip path or group.
-    marks: Vec<Mark>,
+    marks: Vec<PaperMark>,
     open: Vec<Open>,
     refused: BTreeSet<&'static str>,
     /// Part of the paper to which marks are cut; only for CAD.
@@ -72,7 +72,7 @@ enum Ink {
 #[derive(Debug)]
 struct Open {
     kind: Kind,
-    marks: Vec<Mark>,
+    marks: Vec<PaperMark>,
 }
 
 #[derive(Debug, Clone)]
@@ -163,7 +163,7 @@ impl SheetPainter {
         }
     }
 
-    fn push(&mut self, mark: Mark) {
+    fn push(&mut self, mark: PaperMark) {
         if !self.work.keep_or_stop(NOTED, bytes(&mark)) {
             return;
         }
@@ -242,14 +242,14 @@ impl SheetPainter {
             Ink::Plain(color) => color,
             Ink::Gradient(gradient) => {
                 let area = GradientArea { rings: curves, even_odd, gradient };
-                return self.push(Mark::Gradient(Box::new(area)));
+                return self.push(PaperMark::Gradient(Box::new(area)));
             }
         };
         if curves.iter().all(Curve::is_straight) {
             let rings = curves.iter().map(corners).collect();
-            return self.push(Mark::Fill { rings, color, even_odd });
+            return self.push(PaperMark::Fill { rings, color, even_odd });
         }
-        self.push(Mark::Area { rings: curves, color, even_odd });
+        self.push(PaperMark::Area { rings: curves, color, even_odd });
     }
 
     /// Returns the contours of a path on the paper as polygons of one ring each.
@@ -298,8 +298,8 @@ impl SheetPainter {
         let around = Rect::new(around.min() - reach, around.max() + reach)?;
         let is_near = |curve: &Curve| {
             let points = curve.pieces.iter().flat_map(|piece| match *piece {
-                Piece::Cubic(a, b, end) => [a, b, end],
-                Piece::Line(end) | Piece::Arc(_, end) => [end; 3],
+                CurvePiece::Cubic(a, b, end) => [a, b, end],
+                CurvePiece::Line(end) | CurvePiece::Arc(_, end) => [end; 3],
             });
             points.chain([curve.start]).all(|p| around.contains(p))
         };
@@ -380,8 +380,10 @@ impl PaintTarget for SheetPainter {
             let pen = self.pen(width, color, lengths.map(|length| length * scale).collect());
             for curve in curves {
                 self.push(match curve.is_straight() {
-                    true => Mark::Stroke { points: corners(&curve), closed: curve.closed, pen },
-                    false => Mark::Curve { curve, pen },
+                    true => {
+                        PaperMark::Stroke { points: corners(&curve), closed: curve.closed, pen }
+                    }
+                    false => PaperMark::Curve { curve, pen },
                 });
             }
             return Ok(());
@@ -463,9 +465,9 @@ impl PaintTarget for SheetPainter {
         self.open.push(Open { kind: Kind::Everything, marks: Vec::new() });
     }
 
-    fn pop_blended(&mut self, opacity: f64, blend: Blend) {
+    fn pop_blended(&mut self, opacity: f64, blend: BlendFunction) {
         let Some(Open { kind, marks }) = self.open.pop() else { return };
-        if blend != Blend::Normal {
+        if blend != BlendFunction::Normal {
             self.leave_out("blend modes");
         }
         if let Kind::Cut(before) = kind {
@@ -484,7 +486,7 @@ impl PaintTarget for SheetPainter {
         if self.cut.is_some() {
             return self.leave_out("opacities of whole layers");
         }
-        self.push(Mark::Group(Box::new(MarkGroup { marks, clip, opacity })));
+        self.push(PaperMark::Group(Box::new(MarkGroup { marks, clip, opacity })));
     }
 
     fn leave_out(&mut self, what: &'static str) {
@@ -502,22 +504,22 @@ fn polygons(shapes: &Shapes) -> Path {
 }
 
 /// Returns about the bytes that a mark takes, without those of marks in it.
-fn bytes(mark: &Mark) -> u64 {
+fn bytes(mark: &PaperMark) -> u64 {
     let of_curves =
         |rings: &[Curve]| -> usize { rings.iter().map(|r| size_of_val(&r.pieces[..]) + 48).sum() };
     let own = match mark {
-        Mark::Fill { rings, .. } => rings.iter().map(|r| size_of_val(&r[..]) + 24).sum(),
-        Mark::Stroke { points, .. } => size_of_val(&points[..]),
-        Mark::Curve { curve, .. } => size_of_val(&curve.pieces[..]),
-        Mark::Area { rings, .. } => of_curves(rings),
-        Mark::Gradient(area) => {
+        PaperMark::Fill { rings, .. } => rings.iter().map(|r| size_of_val(&r[..]) + 24).sum(),
+        PaperMark::Stroke { points, .. } => size_of_val(&points[..]),
+        PaperMark::Curve { curve, .. } => size_of_val(&curve.pieces[..]),
+        PaperMark::Area { rings, .. } => of_curves(rings),
+        PaperMark::Gradient(area) => {
             size_of::<GradientArea>()
                 + of_curves(&area.rings)
                 + size_of_val(&area.gradient.stops[..])
         }
-        Mark::Text { .. } | Mark::Dimension(_) | Mark::Group(_) => 0,
+        PaperMark::Text { .. } | PaperMark::Dimension(_) | PaperMark::Group(_) => 0,
     };
-    (size_of::<Mark>() + own) as u64
+    (size_of::<PaperMark>() + own) as u64
 }
 
 #[cfg(test)]

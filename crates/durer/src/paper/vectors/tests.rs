@@ -2,7 +2,7 @@ use super::*;
 use crate::paper::paint;
 use crate::raster::paint::Canvas;
 use crate::target::Pixels;
-use crate::target::gradient::{Shape, Spread};
+use crate::target::gradient::{GradientShape, Spread};
 use std::sync::Arc;
 
 const SIDE: u32 = 64;
@@ -107,7 +107,7 @@ fn layers_keep_the_clip_paths_that_are_open() {
     let names: Vec<&str> = sheet.layers.iter().map(|layer| &layer.name[..]).collect();
     assert_eq!(names, ["a", "a-2", "b"]);
     for layer in &sheet.layers {
-        let [Mark::Group(group)] = &layer.marks[..] else { panic!("{:?}", layer.marks) };
+        let [PaperMark::Group(group)] = &layer.marks[..] else { panic!("{:?}", layer.marks) };
         assert!(group.clip.is_some() && group.marks.len() == 1);
     }
 }
@@ -118,7 +118,7 @@ fn content_without_vectors_is_named() {
     painter.begin_mask();
     painter.end_mask(MaskKind::Alpha);
     painter.push_group();
-    painter.pop_blended(1.0, Blend::Multiply);
+    painter.pop_blended(1.0, BlendFunction::Multiply);
     let refused = painter.into_sheet().expect_err("refused");
     let names = ["blend modes", "masks"];
     assert_eq!(Vec::from_iter(refused), names);
@@ -130,8 +130,13 @@ fn gradients_show_what_a_canvas_shows() {
     let turned = DAffine2::from_cols_array(&[0.8, 0.5, -0.9, 1.1, 6.0, -4.0]);
     let focus = DVec2::new(29.0, 25.0);
     for shape in [
-        Shape::Linear { start: DVec2::new(20.0, 8.0), end: DVec2::new(36.0, 20.0) },
-        Shape::Radial { center: DVec2::splat(30.0), radius: 14.0, focus, focus_radius: 2.0 },
+        GradientShape::Linear { start: DVec2::new(20.0, 8.0), end: DVec2::new(36.0, 20.0) },
+        GradientShape::Radial {
+            center: DVec2::splat(30.0),
+            radius: 14.0,
+            focus,
+            focus_radius: 2.0,
+        },
     ] {
         for spread in [Spread::Pad, Spread::Repeat, Spread::Reflect] {
             for transform in [DAffine2::IDENTITY, turned] {
@@ -148,7 +153,7 @@ fn gradients_show_what_a_canvas_shows() {
         }
     }
     let flat = Gradient {
-        shape: Shape::Linear { start: focus, end: focus },
+        shape: GradientShape::Linear { start: focus, end: focus },
         stops,
         spread: Spread::Pad,
         transform: turned,
@@ -159,7 +164,7 @@ fn gradients_show_what_a_canvas_shows() {
 }
 
 /// Returns the marks that are painted for CAD on a sheet as large as 64 pixels.
-fn for_cad(draw: impl Fn(&mut SheetPainter)) -> Vec<Mark> {
+fn for_cad(draw: impl Fn(&mut SheetPainter)) -> Vec<PaperMark> {
     let mut painter = SheetPainter::new(SIDE, SIDE);
     painter.set_cad();
     draw(&mut painter);
@@ -184,8 +189,8 @@ fn marks_for_cad_are_cut_and_fill_by_turns() {
         t.pop(1.0);
         t.stroke(&line(60.0, 70.0), &miter, &red, 1.0).expect("stroke");
     });
-    let ends = |mark: &Mark| match mark {
-        Mark::Stroke { points, closed: false, pen: 0 } => [points[0].x, points[1].x],
+    let ends = |mark: &PaperMark| match mark {
+        PaperMark::Stroke { points, closed: false, pen: 0 } => [points[0].x, points[1].x],
         other => panic!("{other:?}"),
     };
     let found: Vec<[f64; 2]> = marks.iter().map(ends).collect();
@@ -201,7 +206,8 @@ fn marks_for_cad_are_cut_and_fill_by_turns() {
         t.fill(&star(60.0), FillRule::NonZero, &red, 1.0);
         t.fill(&Path::circle(DVec2::splat(30.0), 20.0), FillRule::NonZero, &red, 1.0);
     });
-    let [Mark::Fill { rings, even_odd: true, .. }, Mark::Area { even_odd: false, .. }] = &marks[..]
+    let [PaperMark::Fill { rings, even_odd: true, .. }, PaperMark::Area { even_odd: false, .. }] =
+        &marks[..]
     else {
         panic!("{marks:?}")
     };

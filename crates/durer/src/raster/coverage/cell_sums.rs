@@ -46,7 +46,7 @@ pub const INFO: Info = Info {
 
 /// Sums of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Cell {
+pub struct CellSum {
     /// Sum of the heights of the pieces of edges, positive for edges that run towards larger y; −1 … 1 without
     /// overlaps.
     pub cover: f64,
@@ -64,9 +64,9 @@ pub enum Step {
         /// Start and end of the piece, in pixels.
         ends: [DVec2; 2],
         /// Contribution of the piece.
-        adds: Cell,
+        adds: CellSum,
         /// The cell's sums with it.
-        cell: Cell,
+        cell: CellSum,
     },
     /// Coverage of a pixel with a cell.
     Pixel {
@@ -75,7 +75,7 @@ pub enum Step {
         /// Covers of the cells to the left in the row.
         sum: f64,
         /// The cell's own sums.
-        cell: Cell,
+        cell: CellSum,
         /// Coverage 0 … 255.
         coverage: u8,
     },
@@ -156,7 +156,7 @@ pub fn fill(
 /// Cells by row and column.
 struct Sums {
     size: [u32; 2],
-    cells: BTreeMap<[u32; 2], Cell>,
+    cells: BTreeMap<[u32; 2], CellSum>,
 }
 
 impl Sums {
@@ -201,7 +201,7 @@ impl Sums {
     fn piece(&mut self, [x, y]: [u32; 2], ends: [DVec2; 2], t: &mut impl Tracer<Step>) {
         let [p, q] = ends;
         let cover = q.y - p.y;
-        let adds = Cell { cover, area: cover * (f64::from(x) + 1.0 - (p.x + q.x) / 2.0) };
+        let adds = CellSum { cover, area: cover * (f64::from(x) + 1.0 - (p.x + q.x) / 2.0) };
         let cell = self.cells.entry([y, x]).or_default();
         cell.cover += adds.cover;
         cell.area += adds.area;

@@ -28,7 +28,7 @@ mod resolve;
 mod small;
 pub(crate) mod sweep;
 
-pub use partition::{Face, INFO as PARTITION, Step as PartitionStep, fill_partition};
+pub use partition::{INFO as PARTITION, PartitionFace, Step as PartitionStep, fill_partition};
 
 use std::ops::Range;
 

@@ -41,7 +41,7 @@ pub const INFO: Info = Info {
 
 /// One face of a partition: a simple polygon, perhaps with holes, of one colour.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Face {
+pub struct PartitionFace {
     /// The outline in pixels, y down; a face's holes run against its outer contour.
     pub contours: Contours,
     /// 8-bit colour with straight alpha.
@@ -90,14 +90,14 @@ impl PseudocodeLine for Step {
 /// # Errors
 /// [`crate::Error::TooLarge`] for sides beyond 32,767 pixels.
 pub fn fill_partition(
-    faces: &[Face],
+    faces: &[PartitionFace],
     target: &mut Pixels<[u8; 4]>,
     t: &mut impl Tracer<Step>,
 ) -> Result<u64> {
     let (width, height) = (target.width(), target.height());
     check_size(width, height)?;
     let mut list = Vec::new();
-    let edges = |face: &Face| PathEdges::new(&face.contours, width, height, &mut list);
+    let edges = |face: &PartitionFace| PathEdges::new(&face.contours, width, height, &mut list);
     let paths: Vec<PathEdges> = faces.iter().map(edges).collect();
     let mut filler = BandFiller::new(width);
     let mut full = 0;

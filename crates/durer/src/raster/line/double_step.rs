@@ -43,7 +43,7 @@ pub const INFO: Info = Info {
 
 /// Way of two steps along the longer axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Pattern {
+pub enum StepPattern {
     /// Pattern 1: both steps straight on.
     Straight,
     /// Pattern 2: straight on, then aslant.
@@ -54,7 +54,7 @@ pub enum Pattern {
     Aslant,
 }
 
-impl Pattern {
+impl StepPattern {
     /// Returns the number that the paper gives it.
     pub(crate) const fn number(self) -> u8 {
         match self {
@@ -97,7 +97,7 @@ pub enum Step {
     /// Two pixels are lit.
     Pair {
         /// Their pattern.
-        pattern: Pattern,
+        pattern: StepPattern,
         /// D that decided on it.
         d: i64,
         /// The pixels.
@@ -126,10 +126,10 @@ impl PseudocodeLine for Step {
     fn line(&self) -> usize {
         match self {
             Self::Start { .. } => 2,
-            Self::Pair { pattern: Pattern::Straight, .. } => 6,
-            Self::Pair { pattern: Pattern::Aslant, .. } => 7,
-            Self::Pair { pattern: Pattern::Second, .. } => 8,
-            Self::Pair { pattern: Pattern::First, .. } => 9,
+            Self::Pair { pattern: StepPattern::Straight, .. } => 6,
+            Self::Pair { pattern: StepPattern::Aslant, .. } => 7,
+            Self::Pair { pattern: StepPattern::Second, .. } => 8,
+            Self::Pair { pattern: StepPattern::First, .. } => 9,
             Self::Last { .. } => 12,
         }
     }
@@ -177,10 +177,10 @@ pub fn draw(
     plot(pixel);
     while step + 2 <= course.last {
         let pattern = match (2 * rise < run, is_positive(d)) {
-            (true, false) => Pattern::Straight,
-            (false, true) => Pattern::Aslant,
-            _ if is_positive(d + e_from_d) => Pattern::First,
-            _ => Pattern::Second,
+            (true, false) => StepPattern::Straight,
+            (false, true) => StepPattern::Aslant,
+            _ if is_positive(d + e_from_d) => StepPattern::First,
+            _ => StepPattern::Second,
         };
         let [first, second] = pattern.across();
         let pixels =

@@ -38,7 +38,7 @@ pub const INFO: Info = Info {
 
 /// Shape drawn at each pixel of the thin line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Pen {
+pub enum PenShape {
     /// Pixels across the longer axis, replicated: columns of flat lines, rows of steep ones.
     Replicated(u32),
     /// A square with this many pixels per side. Pixels may be plotted several times.
@@ -49,7 +49,7 @@ pub enum Pen {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Options {
     /// Pen that draws the line.
-    pub pen: Pen,
+    pub pen: PenShape,
     /// Pattern of 16 bits, the lowest first: the pen is down where they are 1.
     pub pattern: u16,
     /// Each bit counts for this many steps; 0 is taken as 1.
@@ -61,7 +61,7 @@ pub struct Options {
 impl Default for Options {
     /// Creates a thin solid line.
     fn default() -> Self {
-        Self { pen: Pen::Replicated(1), pattern: u16::MAX, repeat: 1, offset: 0 }
+        Self { pen: PenShape::Replicated(1), pattern: u16::MAX, repeat: 1, offset: 0 }
     }
 }
 
@@ -137,7 +137,7 @@ fn is_steep(from: IVec2, to: IVec2) -> bool {
 }
 
 /// Plots the pen at a pixel; an even width has one pixel more before it than behind. Pixels beyond i32 are left out.
-fn stamp(at: IVec2, pen: Pen, steep: bool, plot: &mut impl FnMut(IVec2)) {
+fn stamp(at: IVec2, pen: PenShape, steep: bool, plot: &mut impl FnMut(IVec2)) {
     let reach = |width: u32| {
         let before = i64::from(width / 2);
         -before..i64::from(width) - before
@@ -149,9 +149,9 @@ fn stamp(at: IVec2, pen: Pen, steep: bool, plot: &mut impl FnMut(IVec2)) {
         }
     };
     match pen {
-        Pen::Replicated(width) if steep => reach(width).for_each(|d| put(d, 0)),
-        Pen::Replicated(width) => reach(width).for_each(|d| put(0, d)),
-        Pen::Square(width) => {
+        PenShape::Replicated(width) if steep => reach(width).for_each(|d| put(d, 0)),
+        PenShape::Replicated(width) => reach(width).for_each(|d| put(0, d)),
+        PenShape::Square(width) => {
             for dy in reach(width) {
                 reach(width).for_each(|dx| put(dx, dy));
             }

@@ -44,7 +44,7 @@ pub const INFO: Info = Info {
 
 /// Kind of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Run {
+pub enum RunKind {
     /// The first one, about half as long as the others.
     First,
     /// One of q pixels, as E is not negative.
@@ -58,7 +58,7 @@ pub enum Run {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
     /// Kind of the run.
-    pub run: Run,
+    pub run: RunKind,
     /// First and last pixel.
     pub ends: [IVec2; 2],
     /// E that decided on its length.
@@ -80,10 +80,10 @@ impl Step {
 impl PseudocodeLine for Step {
     fn line(&self) -> usize {
         match (self.run, self.is_cut) {
-            (Run::First, _) => 5,
+            (RunKind::First, _) => 5,
             (_, true) => 12,
-            (Run::Short, false) => 9,
-            (Run::Long, false) => 11,
+            (RunKind::Short, false) => 9,
+            (RunKind::Long, false) => 11,
         }
     }
 }
@@ -128,7 +128,7 @@ pub fn draw(
     };
     let twice = (2 * course.rise).max(1);
     let (q, r) = (2 * course.steps / twice, 2 * course.steps % twice);
-    let (mut start, mut run, mut decided) = (course.first, Run::First, e);
+    let (mut start, mut run, mut decided) = (course.first, RunKind::First, e);
     while start <= course.last {
         let stop = end.min(course.last + 1);
         t.step(|| {
@@ -141,7 +141,7 @@ pub fn draw(
         }
         (start, distance) = (stop, distance + 1);
         e -= r;
-        (decided, run) = (e, if e < 0 { Run::Long } else { Run::Short });
+        (decided, run) = (e, if e < 0 { RunKind::Long } else { RunKind::Short });
         end += q;
         if e < 0 {
             end += 1;

@@ -47,7 +47,7 @@ const EXACT_STEPS: i64 = 1 << 19;
 
 /// A line between two pixels, both included, and the value that it writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Line<T> {
+pub struct PixelLine<T> {
     /// First pixel, column and row.
     pub from: IVec2,
     /// Last pixel.
@@ -62,7 +62,7 @@ pub struct Step<T> {
     /// First and last pixel of the tile, both included; tiles at the target's border end with it.
     pub tile: (IVec2, IVec2),
     /// The line; parts outside the tile are drawn with other tiles.
-    pub line: Line<T>,
+    pub line: PixelLine<T>,
 }
 
 /// Draws lines in their order: pixels of several lines have the value of the last. Pixels outside the target are left
@@ -73,7 +73,7 @@ pub struct Step<T> {
 ///
 /// ```
 /// use durer::math::IVec2;
-/// use durer::raster::line::tiled::{Line, draw};
+/// use durer::raster::line::tiled::{PixelLine, draw};
 /// use durer::target::Pixels;
 /// use durer::trace::NoTrace;
 ///
@@ -83,13 +83,13 @@ pub struct Step<T> {
 /// draw(&lines, &mut picture, &mut NoTrace);
 /// assert_eq!(String::from_iter(picture.data()), "aab....ba...b.a".to_owned());
 /// ```
-pub fn draw<T: Copy>(lines: &[Line<T>], target: &mut Pixels<T>, t: &mut impl Tracer<Step<T>>) {
+pub fn draw<T: Copy>(lines: &[PixelLine<T>], target: &mut Pixels<T>, t: &mut impl Tracer<Step<T>>) {
     draw_at(default_level(), lines, target, t);
 }
 
 fn draw_at<T: Copy>(
     level: Level,
-    lines: &[Line<T>],
+    lines: &[PixelLine<T>],
     target: &mut Pixels<T>,
     t: &mut impl Tracer<Step<T>>,
 ) {
@@ -115,7 +115,7 @@ struct Tiles<T> {
     size: (i64, i64),
     /// Start of each tile's entries, and the end of the last.
     starts: Vec<u32>,
-    entries: Vec<Line<T>>,
+    entries: Vec<PixelLine<T>>,
     /// The pixels of one tile.
     copy: Vec<T>,
 }
@@ -123,7 +123,7 @@ struct Tiles<T> {
 impl<T: Copy> Tiles<T> {
     /// Calls `f` with the number of each tile that the box of a line touches.
     #[inline(always)]
-    fn each(&self, line: &Line<T>, mut f: impl FnMut(usize)) {
+    fn each(&self, line: &PixelLine<T>, mut f: impl FnMut(usize)) {
         let range = |a: i32, b: i32, side: i64| {
             let low = i64::from(a.min(b)).max(0) >> TILE_BITS;
             let high = i64::from(a.max(b)).min(side - 1) >> TILE_BITS;
@@ -135,7 +135,7 @@ impl<T: Copy> Tiles<T> {
     }
 
     /// Sorts lines by their tiles, by counting.
-    fn sort(&mut self, lines: &[Line<T>]) {
+    fn sort(&mut self, lines: &[PixelLine<T>]) {
         let down = (self.size.1 as usize).div_ceil(TILE as usize);
         let mut starts = std::mem::take(&mut self.starts);
         starts.clear();
@@ -181,7 +181,7 @@ impl<T: Copy> Tiles<T> {
 /// Draws the lines of a tile between two corners.
 fn draw_tile<T: Copy>(
     level: Level,
-    lines: &[Line<T>],
+    lines: &[PixelLine<T>],
     (corner, end): (IVec2, IVec2),
     copy: &mut [T; PIXELS],
     target: &mut Pixels<T>,
@@ -223,13 +223,13 @@ fn draw_tile<T: Copy>(
 
 /// Returns whether a line may be set up with others.
 #[inline(always)]
-fn is_short<T>(line: &Line<T>) -> bool {
+fn is_short<T>(line: &PixelLine<T>) -> bool {
     line.from.x.abs_diff(line.to.x).max(line.from.y.abs_diff(line.to.y)) <= SHORT
 }
 
 /// Returns short lines as seen from a corner of a tile that their boxes touch; other lines are left at 0.
 #[inline(always)]
-fn ends<T>(lines: &[Line<T>], corner: IVec2) -> Ends {
+fn ends<T>(lines: &[PixelLine<T>], corner: IVec2) -> Ends {
     let mut ends = Ends::default();
     for (i, line) in lines.iter().enumerate().take(AT_ONCE).filter(|(_, line)| is_short(line)) {
         let (from, to) = (line.from - corner, line.to - corner);
@@ -241,7 +241,7 @@ fn ends<T>(lines: &[Line<T>], corner: IVec2) -> Ends {
 
 /// Draws the part of a long line within a tile, onto the tile's copy.
 #[inline(never)]
-fn draw_long<T: Copy>(line: &Line<T>, corner: IVec2, end: IVec2, copy: &mut [T; PIXELS]) {
+fn draw_long<T: Copy>(line: &PixelLine<T>, corner: IVec2, end: IVec2, copy: &mut [T; PIXELS]) {
     let seen =
         |p: IVec2| (i64::from(p.x) - i64::from(corner.x), i64::from(p.y) - i64::from(corner.y));
     let course = Course::between(seen(line.from), seen(line.to));
@@ -308,11 +308,11 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             ((seed >> 33) as i64 % side - 40) as i32
         };
-        let lines: Vec<Line<u16>> = (0..3000)
+        let lines: Vec<PixelLine<u16>> = (0..3000)
             .map(|value| {
                 let (from, reach) =
                     (IVec2::new(random(330), random(310)), [9, 90, 700][usize::from(value) % 3]);
-                Line { from, to: from + IVec2::new(random(reach), random(reach)), value }
+                PixelLine { from, to: from + IVec2::new(random(reach), random(reach)), value }
             })
             .collect();
         let at = |level| {

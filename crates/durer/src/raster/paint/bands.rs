@@ -11,7 +11,7 @@ use super::color::Space;
 use super::command::{Item, Line, Prepared, sort_into_bands};
 use super::outline::{Drawn, Filler};
 use super::source::Source;
-use super::{Blend, Canvas, Color, MaskKind};
+use super::{BlendFunction, Canvas, Color, MaskKind};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::{Sink, unpacked};
 use crate::raster::coverage::{self, convex};
@@ -285,7 +285,7 @@ impl<'a, P: Space> Painter<'a, P> {
     }
 
     /// Lays the last layer over the one below it, within the clip paths that are open.
-    fn pop_group(&mut self, opacity: u8, blend: Blend, base: &mut [P]) {
+    fn pop_group(&mut self, opacity: u8, blend: BlendFunction, base: &mut [P]) {
         let Some(layer) = self.layers.pop() else { return };
         let below = self.layers.last_mut().map_or(base, |l| l.as_mut_slice());
         self.floors.pop();

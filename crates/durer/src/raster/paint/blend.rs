@@ -11,7 +11,7 @@ use super::color::Space;
 /// Where the layer or the backdrop is transparent, only the part that both cover is blended:
 /// Cs·(1 − αb) + B(Cb, Cs)·αb is composited over the backdrop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Blend {
+pub enum BlendFunction {
     /// Cs.
     #[default]
     Normal,
@@ -49,7 +49,7 @@ pub enum Blend {
     PlusLighter,
 }
 
-impl Blend {
+impl BlendFunction {
     /// Returns B(Cb, Cs) of straight colours 0 … 1.
     pub(crate) fn mix(self, backdrop: [f32; 3], layer: [f32; 3]) -> [f32; 3] {
         let each = |f: fn(f32, f32) -> f32| std::array::from_fn(|i| f(backdrop[i], layer[i]));
@@ -171,24 +171,24 @@ fn with_saturation(color: [f32; 3], wanted: f32) -> [f32; 3] {
 mod tests {
     use super::*;
 
-    const ALL: [Blend; 17] = [
-        Blend::Normal,
-        Blend::Multiply,
-        Blend::Screen,
-        Blend::Overlay,
-        Blend::Darken,
-        Blend::Lighten,
-        Blend::ColorDodge,
-        Blend::ColorBurn,
-        Blend::HardLight,
-        Blend::SoftLight,
-        Blend::Difference,
-        Blend::Exclusion,
-        Blend::Hue,
-        Blend::Saturation,
-        Blend::Color,
-        Blend::Luminosity,
-        Blend::PlusLighter,
+    const ALL: [BlendFunction; 17] = [
+        BlendFunction::Normal,
+        BlendFunction::Multiply,
+        BlendFunction::Screen,
+        BlendFunction::Overlay,
+        BlendFunction::Darken,
+        BlendFunction::Lighten,
+        BlendFunction::ColorDodge,
+        BlendFunction::ColorBurn,
+        BlendFunction::HardLight,
+        BlendFunction::SoftLight,
+        BlendFunction::Difference,
+        BlendFunction::Exclusion,
+        BlendFunction::Hue,
+        BlendFunction::Saturation,
+        BlendFunction::Color,
+        BlendFunction::Luminosity,
+        BlendFunction::PlusLighter,
     ];
 
     /// Results for both colours, worked out by hand from the specification.
@@ -196,18 +196,18 @@ mod tests {
     fn two_colors_blend_as_the_specification_says() {
         let (backdrop, layer) = ([0.2, 0.4, 0.8], [0.6, 0.5, 0.1]);
         let wanted = [
-            (Blend::Multiply, [0.12, 0.2, 0.08]),
-            (Blend::Screen, [0.68, 0.7, 0.82]),
-            (Blend::Overlay, [0.24, 0.4, 0.64]),
-            (Blend::Darken, [0.2, 0.4, 0.1]),
-            (Blend::Lighten, [0.6, 0.5, 0.8]),
-            (Blend::ColorDodge, [0.5, 0.8, 0.888_889]),
-            (Blend::ColorBurn, [0.0, 0.0, 0.0]),
-            (Blend::HardLight, [0.36, 0.4, 0.16]),
-            (Blend::SoftLight, [0.249_6, 0.4, 0.672]),
-            (Blend::Difference, [0.4, 0.1, 0.7]),
-            (Blend::Exclusion, [0.56, 0.5, 0.74]),
-            (Blend::Luminosity, [0.302, 0.502, 0.902]),
+            (BlendFunction::Multiply, [0.12, 0.2, 0.08]),
+            (BlendFunction::Screen, [0.68, 0.7, 0.82]),
+            (BlendFunction::Overlay, [0.24, 0.4, 0.64]),
+            (BlendFunction::Darken, [0.2, 0.4, 0.1]),
+            (BlendFunction::Lighten, [0.6, 0.5, 0.8]),
+            (BlendFunction::ColorDodge, [0.5, 0.8, 0.888_889]),
+            (BlendFunction::ColorBurn, [0.0, 0.0, 0.0]),
+            (BlendFunction::HardLight, [0.36, 0.4, 0.16]),
+            (BlendFunction::SoftLight, [0.249_6, 0.4, 0.672]),
+            (BlendFunction::Difference, [0.4, 0.1, 0.7]),
+            (BlendFunction::Exclusion, [0.56, 0.5, 0.74]),
+            (BlendFunction::Luminosity, [0.302, 0.502, 0.902]),
         ];
         for (blend, wanted) in wanted {
             let found = blend.mix(backdrop, layer);
@@ -233,20 +233,26 @@ mod tests {
     #[test]
     fn the_four_of_hue_keep_what_they_promise() {
         let (backdrop, layer) = ([0.3, 0.45, 0.6], [0.55, 0.4, 0.35]);
-        for blend in [Blend::Hue, Blend::Saturation, Blend::Color] {
+        for blend in [BlendFunction::Hue, BlendFunction::Saturation, BlendFunction::Color] {
             let kept = luminosity(blend.mix(backdrop, layer)) - luminosity(backdrop);
             assert!(kept.abs() < 1e-6, "{blend:?}");
         }
-        let mixed = Blend::Luminosity.mix(backdrop, layer);
+        let mixed = BlendFunction::Luminosity.mix(backdrop, layer);
         assert!((luminosity(mixed) - luminosity(layer)).abs() < 1e-6);
-        assert!((saturation(Blend::Hue.mix(backdrop, layer)) - saturation(backdrop)).abs() < 1e-6);
-        assert!((saturation(Blend::Color.mix(backdrop, layer)) - saturation(layer)).abs() < 1e-6);
+        assert!(
+            (saturation(BlendFunction::Hue.mix(backdrop, layer)) - saturation(backdrop)).abs()
+                < 1e-6
+        );
+        assert!(
+            (saturation(BlendFunction::Color.mix(backdrop, layer)) - saturation(layer)).abs()
+                < 1e-6
+        );
     }
 
     #[test]
     fn greys_have_no_saturation_to_give() {
         let backdrop = [0.2, 0.4, 0.9];
-        let grey = Blend::Saturation.mix(backdrop, [0.5; 3]);
+        let grey = BlendFunction::Saturation.mix(backdrop, [0.5; 3]);
         assert_eq!(grey, [luminosity(backdrop); 3]);
     }
 }

@@ -3,7 +3,7 @@
 use super::color::{Space, premultiply};
 use super::outline::{Drawn, Lists, Outline};
 use super::source::{self, Source};
-use super::{Blend, Color, MaskKind, Paint};
+use super::{BlendFunction, Color, MaskKind, Paint};
 use crate::math::DAffine2;
 use crate::raster::coverage::{self, convex::Strip};
 
@@ -54,7 +54,9 @@ impl Open {
         let (first, second) = match self {
             Self::Clip => (Some(Prepared::PopClip), None),
             Self::Everything => (None, None),
-            Self::Group => (Some(Prepared::PopGroup { opacity: 255, blend: Blend::Normal }), None),
+            Self::Group => {
+                (Some(Prepared::PopGroup { opacity: 255, blend: BlendFunction::Normal }), None)
+            }
             Self::Mask => {
                 (Some(Prepared::EndMask { kind: MaskKind::Alpha }), Some(Prepared::PopClip))
             }
@@ -109,7 +111,7 @@ pub(super) enum Command {
     PushGroup,
     PopGroup {
         opacity: f64,
-        blend: Blend,
+        blend: BlendFunction,
     },
     BeginMask,
     EndMask {
@@ -147,7 +149,7 @@ pub(super) enum Prepared<'a, P> {
     PushClip { outline: Drawn<'a>, how: coverage::Options },
     PopClip,
     PushGroup,
-    PopGroup { opacity: u8, blend: Blend },
+    PopGroup { opacity: u8, blend: BlendFunction },
     BeginMask,
     EndMask { kind: MaskKind },
 }

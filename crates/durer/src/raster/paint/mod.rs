@@ -11,8 +11,8 @@ mod outline;
 mod source;
 mod target;
 
-pub use blend::Blend;
-pub use source::{Color, Filter, Paint, Pattern};
+pub use blend::BlendFunction;
+pub use source::{Color, ImageFilter, Paint, Pattern};
 pub use target::PaintTarget;
 
 use std::sync::{Mutex, PoisonError};
@@ -425,13 +425,13 @@ impl Canvas {
     /// Ends the clip path, mask or group opened last; the layer of a group is laid over the layers below it with the
     /// given opacity 0 … 1. If nothing is open, nothing happens.
     pub fn pop(&mut self, opacity: f64) {
-        self.pop_blended(opacity, Blend::Normal);
+        self.pop_blended(opacity, BlendFunction::Normal);
     }
 
     /// Ends what was opened last as [`Canvas::pop`] does, and blends the colours of a group's layer with those below it
     /// in the layer that the group was started on. Groups are isolated: marks within a group blend only with the
     /// group's own layer.
-    pub fn pop_blended(&mut self, opacity: f64, blend: Blend) {
+    pub fn pop_blended(&mut self, opacity: f64, blend: BlendFunction) {
         if self.open.last() == Some(&Open::Mask) {
             self.end_mask(MaskKind::Alpha);
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::color::{Space, premultiply};
 use crate::math::{DAffine2, DVec2};
 use crate::target::Pixels;
-use crate::target::gradient::{Gradient, Shape, Spread};
+use crate::target::gradient::{Gradient, GradientShape, Spread};
 
 /// 8-bit sRGB with straight alpha.
 pub type Color = [u8; 4];
@@ -21,12 +21,12 @@ pub struct Pattern {
     /// Extension outside the image: the pixels at its border, or the image again; `None` = nothing.
     pub spread: Option<Spread>,
     /// Filter between its pixels.
-    pub filter: Filter,
+    pub filter: ImageFilter,
 }
 
 /// Filter for colours between the pixels of an image. Colours are weighted by their alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Filter {
+pub enum ImageFilter {
     /// The nearest pixel.
     Nearest,
     /// A mixture of the four pixels around.
@@ -211,13 +211,13 @@ fn stop_color(stops: &[(f64, Color)], t: f64) -> [f64; 4] {
 }
 
 /// Returns the gradient's parameter at a point; `None` if no circle passes through it.
-fn parameter(shape: &Shape, p: DVec2) -> Option<f64> {
+fn parameter(shape: &GradientShape, p: DVec2) -> Option<f64> {
     match *shape {
-        Shape::Linear { start, end } => {
+        GradientShape::Linear { start, end } => {
             let d = end - start;
             Some((p - start).dot(d) / d.length_squared())
         }
-        Shape::Radial { center, radius, focus, focus_radius } => {
+        GradientShape::Radial { center, radius, focus, focus_radius } => {
             // The largest t for which p is on the circle around focus + t (center − focus) with
             // radius r0 + t (r1 − r0) ≥ 0.
             let (cd, pd, dr) = (center - focus, p - focus, radius - focus_radius);
@@ -265,13 +265,13 @@ fn within(at: i64, n: i64, pattern: &Pattern) -> Option<u32> {
 /// a pixel that is painted there.
 fn image_color(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
     match pattern.filter {
-        Filter::Nearest => {
+        ImageFilter::Nearest => {
             let at = p.floor();
             pixel(pattern, at.x, at.y)
         }
-        Filter::Bilinear => bilinear(pattern, p).straight(),
-        Filter::Bicubic => bicubic(pattern, p),
-        Filter::Area => area(pattern, p, image_from_pixel),
+        ImageFilter::Bilinear => bilinear(pattern, p).straight(),
+        ImageFilter::Bicubic => bicubic(pattern, p),
+        ImageFilter::Area => area(pattern, p, image_from_pixel),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The painting operations that pixels and vectors have in common.
 
-use super::{Blend, Canvas, MaskKind, Options, Paint};
+use super::{BlendFunction, Canvas, MaskKind, Options, Paint};
 use crate::Result;
 use crate::curve::Path;
 use crate::math::DAffine2;
@@ -52,11 +52,11 @@ pub trait PaintTarget {
     fn end_mask(&mut self, kind: MaskKind);
 
     /// Ends the clip path, mask or group opened last, and lays a group over the marks below it.
-    fn pop_blended(&mut self, opacity: f64, blend: Blend);
+    fn pop_blended(&mut self, opacity: f64, blend: BlendFunction);
 
     /// Ends what was opened last as [`PaintTarget::pop_blended`] does, without a blend mode.
     fn pop(&mut self, opacity: f64) {
-        self.pop_blended(opacity, Blend::Normal);
+        self.pop_blended(opacity, BlendFunction::Normal);
     }
 
     /// Notes that a kind of content is left out because nothing paints it, such as `"filters"`.
@@ -104,7 +104,7 @@ impl PaintTarget for Canvas {
         self.end_mask(kind);
     }
 
-    fn pop_blended(&mut self, opacity: f64, blend: Blend) {
+    fn pop_blended(&mut self, opacity: f64, blend: BlendFunction) {
         self.pop_blended(opacity, blend);
     }
 }

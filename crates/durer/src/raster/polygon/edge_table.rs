@@ -48,7 +48,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// An entry of the edge table, row by row (bucket by bucket), before anything is filled.
-    Table(Edge),
+    Table(TableEdge),
     /// An edge enters the active edge table at this row and pixel.
     Enter {
         /// Row.
@@ -61,7 +61,7 @@ pub enum Step {
         /// Row.
         y: i32,
         /// Edge as it is in this row.
-        edge: Edge,
+        edge: TableEdge,
     },
     /// Edges that end above this row leave the table; this many stay.
     Leave {
@@ -88,7 +88,7 @@ impl PseudocodeLine for Step {
 
 /// An edge in the tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Edge {
+pub struct TableEdge {
     /// First row whose centres the edge crosses, and one past the last: y_min and y_max.
     pub rows: (i32, i32),
     /// First pixel of the current row whose centre is not left of the edge.
@@ -106,7 +106,7 @@ pub struct Edge {
     pub winding: i32,
 }
 
-impl Edge {
+impl TableEdge {
     /// Creates the edge between two snapped points, set up for row `top` or its first one below; `None`
     /// if it crosses no row's centres.
     fn new(a: (i32, i32), b: (i32, i32), top: i32) -> Option<Self> {
@@ -176,7 +176,7 @@ pub fn fill(
     let mut table = table(contours, height);
     table.sort_by_key(|e| std::cmp::Reverse(e.rows.0));
     table.iter().rev().for_each(|edge| t.step(|| Step::Table(*edge)));
-    let mut active: Vec<Edge> = Vec::new();
+    let mut active: Vec<TableEdge> = Vec::new();
     let mut y = table.last().map_or(0, |e| e.rows.0);
     while (y as u32) < height && !(table.is_empty() && active.is_empty()) {
         while let Some(edge) = table.pop_if(|e| e.rows.0 == y) {
@@ -192,7 +192,7 @@ pub fn fill(
         y += 1;
         active.retain(|e| e.rows.1 > y);
         t.step(|| Step::Leave { y, active: active.len() });
-        active.iter_mut().for_each(Edge::advance);
+        active.iter_mut().for_each(TableEdge::advance);
         if active.is_empty() {
             y = table.last().map_or(y, |e| e.rows.0);
         }
@@ -200,16 +200,22 @@ pub fn fill(
 }
 
 /// Returns the edges of a polygon that cross rows of the target.
-pub(crate) fn table(contours: &Contours, height: u32) -> Vec<Edge> {
+pub(crate) fn table(contours: &Contours, height: u32) -> Vec<TableEdge> {
     let mut table = Vec::new();
     snapped_edges(contours, 0..contours.points().len(), |a, b| {
-        table.extend(Edge::new(a, b, 0).filter(|e| i64::from(e.rows.0) < i64::from(height)));
+        table.extend(TableEdge::new(a, b, 0).filter(|e| i64::from(e.rows.0) < i64::from(height)));
     });
     table
 }
 
 /// Emits the spans of one row from its edges in order of x; touching spans are joined.
-pub(crate) fn row(active: &[Edge], y: i32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
+pub(crate) fn row(
+    active: &[TableEdge],
+    y: i32,
+    width: u32,
+    rule: FillRule,
+    mut emit: impl FnMut(Span),
+) {
     let width = i64::from(width.min(i32::MAX as u32));
     let (mut winding, mut span) = (0, Span { y, x0: 0, x1: 0 });
     for edge in active {

@@ -46,14 +46,14 @@ pub enum Step {
     /// Pixels are taken from the stack, or are the seed's, and filled.
     Fill {
         /// The pixels.
-        run: Run,
+        run: FillRun,
         /// Size of the stack then: pixels of the naive form, runs of the other.
         waiting: usize,
     },
     /// Pixels are put on the stack: a neighbour, or a run beside a filled one.
-    Push(Run),
+    Push(FillRun),
     /// A pixel is taken from the stack that is outside, not of the region, or filled already.
-    Skip(Run),
+    Skip(FillRun),
 }
 
 impl PseudocodeLine for Step {
@@ -69,7 +69,7 @@ impl PseudocodeLine for Step {
 
 /// Pixels of a row; runs on the stack may be outside the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run {
+pub struct FillRun {
     /// Row.
     pub y: i64,
     /// First pixel.
@@ -78,7 +78,7 @@ pub struct Run {
     pub x1: i64,
 }
 
-impl Run {
+impl FillRun {
     fn pixel((x, y): (i64, i64)) -> Self {
         Self { y, x0: x, x1: x + 1 }
     }
@@ -90,7 +90,7 @@ impl Run {
 
 impl Step {
     /// Returns the pixels that the step fills.
-    pub fn filled(&self) -> Option<Run> {
+    pub fn filled(&self) -> Option<FillRun> {
         if let Self::Fill { run, .. } = *self { Some(run) } else { None }
     }
 }
@@ -343,7 +343,7 @@ fn listens<P: Copy>(
         let (before, after) = image.row(y).split_at(x as usize);
         let left = before.iter().rev().take_while(|p| inside(**p)).count();
         let right = after.iter().take_while(|p| inside(**p)).count();
-        let run = Run::of((y as usize, x as usize - left, x as usize + right));
+        let run = FillRun::of((y as usize, x as usize - left, x as usize + right));
         Step::Fill { run, waiting: 0 }
     });
     listens
@@ -365,18 +365,18 @@ fn naive(
     let (mut found, mut charged) = (0, 0);
     while let Some((x, y)) = stack.pop() {
         if !region.is_open(x, y) {
-            t.step(|| Step::Skip(Run::pixel((x, y))));
+            t.step(|| Step::Skip(FillRun::pixel((x, y))));
             continue;
         }
         region.open[y as usize * region.words + x as usize / 64] &= !(1 << (x as usize % 64));
         found += 1;
         let waiting = stack.len();
-        t.step(|| Step::Fill { run: Run::pixel((x, y)), waiting });
+        t.step(|| Step::Fill { run: FillRun::pixel((x, y)), waiting });
         let most = waiting + neighbours.len();
         charge_stack(charge, &mut charged, most * size_of::<(i64, i64)>())?;
         // The last one pushed is taken first, so pixels are visited in the order of the recursive form.
         stack.extend(neighbours.iter().rev().map(|(dx, dy)| (x + dx, y + dy)));
-        stack.iter().skip(waiting).for_each(|&at| t.step(|| Step::Push(Run::pixel(at))));
+        stack.iter().skip(waiting).for_each(|&at| t.step(|| Step::Push(FillRun::pixel(at))));
     }
     Ok(found)
 }
@@ -396,7 +396,7 @@ fn spans(
     while let Some((y, start, end)) = stack.pop() {
         if found > 0 {
             let waiting = stack.len();
-            t.step(|| Step::Fill { run: Run::of((y, start, end)), waiting });
+            t.step(|| Step::Fill { run: FillRun::of((y, start, end)), waiting });
         }
         found += (end - start) as u64;
         let (from, to) = (start.saturating_sub(reach), (end + reach).min(region.width));
@@ -409,7 +409,7 @@ fn spans(
                 let run = region.take_run(next, hit);
                 charge_stack(charge, &mut charged, (stack.len() + 1) * size_of::<[usize; 3]>())?;
                 stack.push((next, run.0, run.1));
-                t.step(|| Step::Push(Run::of((next, run.0, run.1))));
+                t.step(|| Step::Push(FillRun::of((next, run.0, run.1))));
                 x = run.1;
             }
         }

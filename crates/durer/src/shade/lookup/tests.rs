@@ -28,7 +28,7 @@ fn sixteen_look_ups_are_sixteen_times_one() {
         let image = Image { name: String::new(), width, height, data };
         for wrap in [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge] {
             for mip in [MipFilter::None, MipFilter::Nearest, MipFilter::Linear] {
-                let (mag, min) = (Filter::Linear, Filter::Linear);
+                let (mag, min) = (TextureFilter::Linear, TextureFilter::Linear);
                 let sampler = Sampler { mag, min, mip, wrap_u: wrap, wrap_v: wrap };
                 for usage in [Usage::Color, Usage::ColorWithAlpha, Usage::Data] {
                     let texture = PreparedTexture::new(&image, sampler, usage);

@@ -11,7 +11,7 @@ fn ramp(width: u32, height: u32) -> Image {
     Image { name: String::new(), width, height, data }
 }
 
-fn sampler(filter: Filter, mip: MipFilter, wrap: Wrap) -> Sampler {
+fn sampler(filter: TextureFilter, mip: MipFilter, wrap: Wrap) -> Sampler {
     Sampler { mag: filter, min: filter, mip, wrap_u: wrap, wrap_v: wrap }
 }
 
@@ -23,7 +23,9 @@ fn at(texture: &PreparedTexture<'_>, u: f32, v: f32) -> Vec4 {
 fn texel_centres_are_exact() {
     for (width, height) in [(8, 4), (5, 7), (1, 3), (300, 2), (2047, 1)] {
         let image = ramp(width, height);
-        for (filter, wrap) in WRAPS.map(|w| [(Filter::Linear, w), (Filter::Nearest, w)]).concat() {
+        for (filter, wrap) in
+            WRAPS.map(|w| [(TextureFilter::Linear, w), (TextureFilter::Nearest, w)]).concat()
+        {
             let texture =
                 PreparedTexture::new(&image, sampler(filter, MipFilter::None, wrap), Usage::Color);
             for (i, &code) in image.data.iter().enumerate() {
@@ -46,7 +48,7 @@ fn floor_is_the_standard_librarys() {
 #[test]
 fn wrap_modes_follow_their_laws() {
     let image = ramp(8, 8);
-    for filter in [Filter::Linear, Filter::Nearest] {
+    for filter in [TextureFilter::Linear, TextureFilter::Nearest] {
         let of = |wrap| {
             PreparedTexture::new(&image, sampler(filter, MipFilter::None, wrap), Usage::Data)
         };
@@ -69,7 +71,7 @@ fn repeat_has_no_seam() {
     let image = ramp(4, 1);
     let texture = PreparedTexture::new(
         &image,
-        sampler(Filter::Linear, MipFilter::None, Wrap::Repeat),
+        sampler(TextureFilter::Linear, MipFilter::None, Wrap::Repeat),
         Usage::Color,
     );
     let mean = (decode_rgba8(image.data[0]) + decode_rgba8(image.data[3])) * 0.5;
@@ -84,7 +86,7 @@ fn minified_checker_is_mean_grey() {
     let data = (0..64 * 64).map(texel).collect();
     let image = Image { name: String::new(), width: 64, height: 64, data };
     for mip in [MipFilter::Linear, MipFilter::Nearest] {
-        let s = sampler(Filter::Linear, mip, Wrap::Repeat);
+        let s = sampler(TextureFilter::Linear, mip, Wrap::Repeat);
         let texture = PreparedTexture::new(&image, s, Usage::Color);
         for step in [0.06, 0.3, 1.0, 50.0, f32::INFINITY] {
             for i in 0..20 {
@@ -104,7 +106,7 @@ fn the_level_follows_the_footprint() {
         assert!((f64::from(half_log2(x)) - exact).abs() < 0.006, "{x}");
     }
     let image = ramp(256, 64);
-    let s = sampler(Filter::Nearest, MipFilter::Nearest, Wrap::Repeat);
+    let s = sampler(TextureFilter::Nearest, MipFilter::Nearest, Wrap::Repeat);
     let texture = PreparedTexture::new(&image, s, Usage::Data);
     for level in 0..8 {
         let chosen = match texture.detail((1 << (2 * level)) as f32) {
@@ -121,7 +123,7 @@ fn strange_coordinates_have_a_colour() {
     let strange =
         [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e20, -1e9, 1e-40];
     for wrap in WRAPS {
-        for filter in [Filter::Linear, Filter::Nearest] {
+        for filter in [TextureFilter::Linear, TextureFilter::Nearest] {
             for mip in [MipFilter::None, MipFilter::Nearest, MipFilter::Linear] {
                 let texture =
                     PreparedTexture::new(&image, sampler(filter, mip, wrap), Usage::Color);
@@ -143,7 +145,7 @@ fn strange_coordinates_have_a_colour() {
 fn borders_of_cut_outs_keep_their_colour() {
     let data = vec![[0, 200, 0, 255], [255, 0, 255, 0]];
     let image = Image { name: String::new(), width: 2, height: 1, data };
-    let s = sampler(Filter::Linear, MipFilter::Linear, Wrap::ClampToEdge);
+    let s = sampler(TextureFilter::Linear, MipFilter::Linear, Wrap::ClampToEdge);
     let texture = PreparedTexture::new(&image, s, Usage::ColorWithAlpha);
     let middle = at(&texture, 0.5, 0.5);
     assert!((middle - Vec4::new(0.0, decode_srgb8(200), 0.0, 0.5)).abs().max_element() < 1e-6);

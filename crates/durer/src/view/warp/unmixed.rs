@@ -3,7 +3,7 @@
 //! With several samples per pixel, the colours along an outline are mixed from both sides, but each pixel has the depth
 //! of one side. If pixels moved with it, the other side's colour would appear as a ghost.
 
-use super::Source;
+use super::DepthPicture;
 use crate::target::Pixels;
 
 /// Depths of 16 bits are rounded by half of this; smaller steps say nothing.
@@ -14,7 +14,7 @@ const SAME: u8 = 2;
 
 /// Returns the source's colours, in which a pixel at a jump of depth gets the colour of its own side if its colour is
 /// between those of both sides. Cost: O(pixels).
-pub(super) fn unmixed(source: &Source<'_>) -> Pixels<[u8; 4]> {
+pub(super) fn unmixed(source: &DepthPicture<'_>) -> Pixels<[u8; 4]> {
     let mut colors = source.color.clone();
     for y in 0..colors.height() {
         for x in 0..colors.width() {
@@ -27,7 +27,7 @@ pub(super) fn unmixed(source: &Source<'_>) -> Pixels<[u8; 4]> {
 }
 
 /// Returns the colour of a mixed pixel without that of the other side; `None` for a pixel that is not mixed.
-fn own_color(source: &Source<'_>, at: [u32; 2]) -> Option<[u8; 4]> {
+fn own_color(source: &DepthPicture<'_>, at: [u32; 2]) -> Option<[u8; 4]> {
     let pixel = |steps: i32, [dx, dy]: [i32; 2]| {
         let x = at[0].checked_add_signed(dx * steps)?;
         let y = at[1].checked_add_signed(dy * steps)?;

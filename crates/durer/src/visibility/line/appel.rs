@@ -15,7 +15,7 @@
 //! comparing each edge with each contour edge.
 
 use super::face_net::{Carrier, FaceNet};
-use super::hidden_line::Span;
+use super::hidden_line::HiddenSpan;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec3;
 use crate::sorting::CompactSort;
@@ -65,16 +65,16 @@ impl Default for Options {
 
 /// An edge with its invisibility, part by part.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct AppelEdge {
     /// Number of the edge in the net.
     pub edge: usize,
     /// Its ends in space, t = 0 and t = 1, in the direction in which it was carried along.
     pub ends: [DVec3; 2],
     /// Its parts in their order.
-    pub spans: Vec<Span>,
+    pub spans: Vec<HiddenSpan>,
 }
 
-impl Line {
+impl AppelEdge {
     /// Returns the ends of the visible parts.
     pub fn parts(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
         let [p, q] = self.ends;
@@ -87,7 +87,7 @@ impl Line {
         if let Some(last) = self.spans.last_mut() {
             last.to = t;
         }
-        self.spans.push(Span { from: t, to: 1.0, invisibility });
+        self.spans.push(HiddenSpan { from: t, to: 1.0, invisibility });
     }
 }
 
@@ -163,8 +163,8 @@ impl PseudocodeLine for Step {
 }
 
 /// Returns the lines resulting from a list of steps.
-pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
+pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<AppelEdge> {
+    let mut lines: Vec<AppelEdge> = Vec::new();
     for step in steps {
         match step {
             Step::Edge { edge, corners, invisibility: [_, first], .. } => {
@@ -181,9 +181,9 @@ pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
 }
 
 /// Returns an edge of one part.
-fn line(net: &FaceNet, edge: usize, corners: [usize; 2], invisibility: u32) -> Line {
+fn line(net: &FaceNet, edge: usize, corners: [usize; 2], invisibility: u32) -> AppelEdge {
     let ends = corners.map(|corner| net.corners()[corner]);
-    Line { edge, ends, spans: vec![Span { from: 0.0, to: 1.0, invisibility }] }
+    AppelEdge { edge, ends, spans: vec![HiddenSpan { from: 0.0, to: 1.0, invisibility }] }
 }
 
 /// Returns the edges of closed bodies, in the order of the net, with the number of faces that hide each part of them.
@@ -217,7 +217,7 @@ pub fn draw(
     options: &Options,
     work: &Work,
     t: &mut impl Tracer<Step>,
-) -> Result<Vec<Line>> {
+) -> Result<Vec<AppelEdge>> {
     if !net.is_closed() {
         let value = format!("{} whose edges do not all have two", net.faces().len());
         return Err(Error::parameter("faces", value, "those of closed bodies"));
@@ -237,7 +237,7 @@ struct Run<'a, T> {
     net: &'a FaceNet,
     contours: Vec<usize>,
     options: &'a Options,
-    lines: Vec<Line>,
+    lines: Vec<AppelEdge>,
     /// Charge of the contour edges and the lines.
     charge: Charge,
     t: &'a mut T,
@@ -265,8 +265,8 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
             own.change(t, count);
             self.t.step(|| Step::Change { edge, t, cause, invisibility: [before, count] });
         }
-        let spans = own.spans.len() * size_of::<Span>();
-        self.charge.grow((size_of::<Line>() + spans) as u64)?;
+        let spans = own.spans.len() * size_of::<HiddenSpan>();
+        self.charge.grow((size_of::<AppelEdge>() + spans) as u64)?;
         self.lines.push(own);
         let [from, corner] = corners;
         let faces = self.net.faces_over([corner, from]);

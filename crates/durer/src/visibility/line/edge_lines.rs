@@ -5,7 +5,7 @@ use super::smooth_silhouette::Whole;
 use super::steps::Steps;
 use super::tangent::Tangents;
 use crate::target::drawing::LineClass;
-use crate::visibility::object::{Bodies, Edges, Faces, Side};
+use crate::visibility::object::{Bodies, EdgeSide, Edges, Faces};
 
 /// A set of classes of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,7 +144,7 @@ impl Rules<'_> {
         let mut lines = Vec::new();
         for (ends, sides) in self.edges.of_vertices(vertices) {
             if let (Some(class), sharpness) = self.class(ends, sides) {
-                let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
+                let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &EdgeSide| s.item());
                 let items = [item(0), item(1)];
                 let smooth = class == LineClass::Silhouette && sharpness != Sharpness::Sharp;
                 let outside = if smooth { self.outside(items[0]) } else { Outside::Both };
@@ -173,7 +173,7 @@ impl Rules<'_> {
     }
 
     /// Returns the first requested class that an edge belongs to.
-    fn class(&self, ends: [u32; 2], sides: &[Side]) -> (Option<LineClass>, Sharpness) {
+    fn class(&self, ends: [u32; 2], sides: &[EdgeSide]) -> (Option<LineClass>, Sharpness) {
         let blunt = |class: Option<LineClass>| (class, Sharpness::Blunt);
         if self.ends_a_cap(sides)
             && let Some(section) = self.wanted(LineClass::Section)
@@ -251,7 +251,7 @@ impl Rules<'_> {
     }
 
     /// Returns whether some of the triangles are of a cap and some are not.
-    fn ends_a_cap(&self, sides: &[Side]) -> bool {
+    fn ends_a_cap(&self, sides: &[EdgeSide]) -> bool {
         let (Some(cap), Some(materials)) = (self.cap, &self.materials) else { return false };
         let mut caps = sides.iter().map(|s| materials[s.item() as usize] == cap);
         let first = caps.next();

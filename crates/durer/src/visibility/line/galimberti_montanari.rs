@@ -63,7 +63,7 @@ impl Default for Options {
 
 /// A part of an edge that the same faces hide.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct EdgePart {
     /// Start, 0 … 1 along the edge in space.
     pub from: f64,
     /// End along the edge.
@@ -74,20 +74,20 @@ pub struct Part {
 
 /// An edge with its natures, part by part.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct GalimbertiEdge {
     /// Number of the edge in the net.
     pub edge: usize,
     /// Its ends in space, t = 0 and t = 1, in the direction in which it was carried along.
     pub ends: [DVec3; 2],
     /// Its parts in their order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<EdgePart>,
 }
 
-impl Line {
+impl GalimbertiEdge {
     /// Creates an edge of one part.
     fn new(net: &FaceNet, edge: usize, corners: [usize; 2], nature: &[usize]) -> Self {
         let ends = corners.map(|corner| net.corners()[corner]);
-        Self { edge, ends, parts: vec![Part { from: 0.0, to: 1.0, nature: nature.to_vec() }] }
+        Self { edge, ends, parts: vec![EdgePart { from: 0.0, to: 1.0, nature: nature.to_vec() }] }
     }
 
     /// Returns the ends of the visible parts.
@@ -100,7 +100,7 @@ impl Line {
     /// Ends the last part at t, and begins another one with a nature. A part without length is none: there one face
     /// takes the place of another at their common edge.
     fn change(&mut self, t: f64, nature: Vec<usize>) {
-        let next = Part { from: t, to: 1.0, nature };
+        let next = EdgePart { from: t, to: 1.0, nature };
         match self.parts.last_mut() {
             Some(last) if last.from == t && t > 0.0 => *last = next,
             Some(last) => {
@@ -177,12 +177,12 @@ impl PseudocodeLine for Step {
 }
 
 /// Returns the lines that a list of steps leads to.
-pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
+pub fn replay(net: &FaceNet, steps: &[Step]) -> Vec<GalimbertiEdge> {
+    let mut lines: Vec<GalimbertiEdge> = Vec::new();
     for step in steps {
         match step {
             Step::Edge { edge, corners, nature, .. } => {
-                lines.push(Line::new(net, *edge, *corners, nature));
+                lines.push(GalimbertiEdge::new(net, *edge, *corners, nature));
             }
             Step::Change { t, nature, .. } => {
                 lines.iter_mut().last().into_iter().for_each(|l| l.change(*t, nature.clone()));
@@ -224,7 +224,7 @@ pub fn draw(
     options: &Options,
     work: &Work,
     t: &mut impl Tracer<Step>,
-) -> Result<Vec<Line>> {
+) -> Result<Vec<GalimbertiEdge>> {
     let charge = work.charge_for::<usize>("natures of edges", net.faces().len() as u64)?;
     let hiders: Vec<usize> = (0..net.faces().len()).filter(|face| net.is_hider(*face)).collect();
     t.step(|| Step::Hiders { faces: hiders.clone() });
@@ -240,7 +240,7 @@ struct Run<'a, T> {
     net: &'a FaceNet,
     hiders: Vec<usize>,
     options: &'a Options,
-    lines: Vec<Line>,
+    lines: Vec<GalimbertiEdge>,
     /// Charge of the hiding faces and the lines.
     charge: Charge,
     t: &'a mut T,
@@ -268,7 +268,7 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
         let mut nature = known.clone();
         own.iter().for_each(|face| toggle(&mut nature, *face));
         self.t.step(|| Step::Edge { edge, corners, own, nature: nature.clone() });
-        let mut line = Line::new(self.net, edge, corners, &nature);
+        let mut line = GalimbertiEdge::new(self.net, edge, corners, &nature);
         for (on_page, face, crossed) in self.changes(edge, corners) {
             toggle(&mut nature, face);
             let t = self.net.in_space(corners, on_page);
@@ -276,8 +276,8 @@ impl<T: Tracer<Step>> Carrier for Run<'_, T> {
             self.t.step(|| Step::Change { edge, t, face, crossed, nature: nature.clone() });
         }
         let natures: usize = line.parts.iter().map(|part| part.nature.len()).sum();
-        let parts = line.parts.len() * size_of::<Part>() + natures * size_of::<usize>();
-        self.charge.grow((size_of::<Line>() + parts) as u64)?;
+        let parts = line.parts.len() * size_of::<EdgePart>() + natures * size_of::<usize>();
+        self.charge.grow((size_of::<GalimbertiEdge>() + parts) as u64)?;
         self.lines.push(line);
         let [from, corner] = corners;
         let own = self.net.faces_over([corner, from]);

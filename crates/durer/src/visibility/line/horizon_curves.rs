@@ -63,7 +63,7 @@ impl Options {
 
 /// A curve by its heights in columns that follow each other, y up.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Curve {
+pub struct ColumnCurve {
     /// The first column.
     pub first: usize,
     /// y there and in the columns that follow.
@@ -72,7 +72,7 @@ pub struct Curve {
 
 /// Position of a point relative to the horizons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Seen {
+pub enum HorizonSide {
     /// On the upper horizon or above it: visible.
     Above,
     /// Between the horizons: hidden.
@@ -83,13 +83,13 @@ pub enum Seen {
 
 /// A piece of a curve that is seen, within two neighbouring columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct VisiblePiece {
     /// The curve's index.
     pub curve: usize,
     /// Its ends, x in columns, from left to right.
     pub ends: [DVec2; 2],
     /// Horizon beyond which it is.
-    pub seen: Seen,
+    pub seen: HorizonSide,
 }
 
 /// Step of the algorithm.
@@ -106,7 +106,7 @@ pub enum Step {
         /// The lower and the upper horizon there.
         horizons: [f64; 2],
         /// Position relative to both.
-        seen: Seen,
+        seen: HorizonSide,
     },
     /// A curve passes a horizon between two columns.
     Crossing {
@@ -116,7 +116,7 @@ pub enum Step {
         at: DVec2,
     },
     /// A piece is drawn.
-    Draw(Piece),
+    Draw(VisiblePiece),
     /// A horizon has a new height.
     Horizon {
         /// The column.
@@ -138,7 +138,7 @@ impl PseudocodeLine for Step {
 }
 
 /// Returns the result that a list of steps leads to.
-pub fn replay(steps: &[Step]) -> Vec<Piece> {
+pub fn replay(steps: &[Step]) -> Vec<VisiblePiece> {
     let piece = |step: &Step| if let Step::Draw(piece) = *step { Some(piece) } else { None };
     steps.iter().filter_map(piece).collect()
 }
@@ -148,7 +148,7 @@ pub fn replay(steps: &[Step]) -> Vec<Piece> {
 ///
 /// ```
 /// use durer::trace::NoTrace;
-/// use durer::visibility::line::horizon_curves::{Curve, Options, draw};
+/// use durer::visibility::line::horizon_curves::{ColumnCurve, Options, draw};
 ///
 /// let curve = |heights: [f64; 3]| Curve { first: 0, heights: heights.to_vec() };
 /// // A hill before a lower ridge, which comes out on both sides of it and below its top.
@@ -162,8 +162,12 @@ pub fn replay(steps: &[Step]) -> Vec<Piece> {
 /// # Errors
 /// [`Error::NonFinite`] for a height that is NaN or infinite, with the curve's index; [`Error::Memory`] where the
 /// budget does not suffice.
-pub fn draw(curves: &[Curve], options: &Options, t: &mut impl Tracer<Step>) -> Result<Vec<Piece>> {
-    let finite = |curve: &Curve| curve.heights.iter().all(|y| y.is_finite());
+pub fn draw(
+    curves: &[ColumnCurve],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<VisiblePiece>> {
+    let finite = |curve: &ColumnCurve| curve.heights.iter().all(|y| y.is_finite());
     if let Some(index) = curves.iter().position(|curve| !finite(curve)) {
         return Err(Error::NonFinite { what: "curve", index });
     }
@@ -171,7 +175,7 @@ pub fn draw(curves: &[Curve], options: &Options, t: &mut impl Tracer<Step>) -> R
     let _held = options.work.charge_for::<[f64; 2]>("horizons", count)?;
     options.work.room_for::<[f64; 2]>("horizons", count)?;
     let mut horizons = Horizons(vec![[f64::INFINITY, f64::NEG_INFINITY]; options.columns]);
-    let (mut pieces, mut before): (Vec<Piece>, Option<[DVec2; 2]>) = (Vec::new(), None);
+    let (mut pieces, mut before): (Vec<VisiblePiece>, Option<[DVec2; 2]>) = (Vec::new(), None);
     for (number, curve) in curves.iter().enumerate() {
         let shown = options.columns.saturating_sub(curve.first).min(curve.heights.len());
         let heights = &curve.heights[..shown];
@@ -213,15 +217,15 @@ impl Horizons {
         first: usize,
         heights: &[f64],
         t: &mut impl Tracer<Step>,
-    ) -> Vec<Seen> {
+    ) -> Vec<HorizonSide> {
         let of = |(column, &y): (usize, &f64)| {
             let horizons @ [lower, upper] = self.0[column];
             let seen = if y >= upper {
-                Seen::Above
+                HorizonSide::Above
             } else if y <= lower {
-                Seen::Below
+                HorizonSide::Below
             } else {
-                Seen::Hidden
+                HorizonSide::Hidden
             };
             t.step(|| Step::Point { curve, column, y, horizons, seen });
             seen
@@ -236,27 +240,28 @@ impl Horizons {
         curve: usize,
         [column, k]: [usize; 2],
         heights: &[f64],
-        states: [Seen; 2],
-        pieces: &mut Vec<Piece>,
+        states: [HorizonSide; 2],
+        pieces: &mut Vec<VisiblePiece>,
         t: &mut T,
     ) {
         let ys = [heights[k], heights[k + 1]];
         let at = |s: f64| DVec2::new(column as f64 + s, ys[0] + (ys[1] - ys[0]) * s);
-        let mut draw = |from: f64, to: f64, seen: Seen, t: &mut T| {
+        let mut draw = |from: f64, to: f64, seen: HorizonSide, t: &mut T| {
             if from < to {
-                let piece = Piece { curve, ends: [at(from), at(to)], seen };
+                let piece = VisiblePiece { curve, ends: [at(from), at(to)], seen };
                 t.step(|| Step::Draw(piece));
                 pieces.push(piece);
             }
         };
         if states[0] == states[1] {
-            if states[0] != Seen::Hidden {
+            if states[0] != HorizonSide::Hidden {
                 draw(0.0, 1.0, states[0], t);
             }
             return;
         }
-        let cut = |seen: Seen| self.crossing(column, ys, seen);
-        let [start, end] = states.map(|seen| if seen == Seen::Hidden { None } else { cut(seen) });
+        let cut = |seen: HorizonSide| self.crossing(column, ys, seen);
+        let [start, end] =
+            states.map(|seen| if seen == HorizonSide::Hidden { None } else { cut(seen) });
         // Once where a curve goes behind a horizon, twice where it comes out beyond the other.
         let mut last = None;
         for s in [start, end].into_iter().flatten().filter(|s| last.replace(*s) != Some(*s)) {
@@ -271,8 +276,8 @@ impl Horizons {
     }
 
     /// Returns the place at which a curve passes a horizon, from 0 at a column to 1 at the next.
-    fn crossing(&self, column: usize, ys: [f64; 2], seen: Seen) -> Option<f64> {
-        let which = usize::from(seen == Seen::Above);
+    fn crossing(&self, column: usize, ys: [f64; 2], seen: HorizonSide) -> Option<f64> {
+        let which = usize::from(seen == HorizonSide::Above);
         let [a, b] = [self.0[column][which] - ys[0], self.0[column + 1][which] - ys[1]];
         // One column may have no horizon yet: there all is seen, up to the other.
         if !a.is_finite() || !b.is_finite() {

@@ -2,7 +2,7 @@
 
 use crate::math::DVec3;
 use crate::parallel;
-use crate::visibility::object::{Faces, Side};
+use crate::visibility::object::{EdgeSide, Faces};
 
 /// Triangles per job.
 const JOB: usize = 1 << 15;
@@ -53,7 +53,7 @@ impl Planes {
     /// Returns the cosine of the angle by which the surface turns between two triangles at an edge; NaN where one has
     /// no direction.
     #[inline]
-    pub fn cosine(&self, a: Side, b: Side) -> f64 {
+    pub fn cosine(&self, a: EdgeSide, b: EdgeSide) -> f64 {
         let [p, q] = [a, b].map(|side| self.0[side.item() as usize]);
         let cosine = p.across.dot(q.across) / (p.area * q.area);
         if a.forward() == b.forward() { -cosine } else { cosine }

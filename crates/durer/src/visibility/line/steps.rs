@@ -15,7 +15,7 @@ use super::roundness::FLAT;
 use super::vertex_normals::Directions;
 use crate::parallel;
 use crate::sorting::CompactSort;
-use crate::visibility::object::{Edges, Faces, Side};
+use crate::visibility::object::{EdgeSide, Edges, Faces};
 use std::ops::Range;
 
 /// The cosine of 3°: blunter edges are ignored, for files have rounded coordinates.
@@ -282,7 +282,7 @@ impl Seen<'_> {
 
     /// Returns the triangles at an edge of two, and the cosine of what the surface turns by there. None if
     /// there is no surface, or a triangle has no direction.
-    fn turn(&self, sides: &[Side]) -> Option<([u32; 2], f64)> {
+    fn turn(&self, sides: &[EdgeSide]) -> Option<([u32; 2], f64)> {
         let [a, b] = sides else { return None };
         let cosine = self.planes.cosine(*a, *b);
         (!cosine.is_nan()).then_some(([a.item(), b.item()], cosine))

@@ -9,7 +9,7 @@ use super::planes::Planes;
 use super::roundness::FLAT;
 use super::vertex_normals::{Directions, UNEVEN};
 use crate::parallel;
-use crate::visibility::object::{Edges, Faces, Side};
+use crate::visibility::object::{EdgeSide, Edges, Faces};
 use std::ops::Range;
 
 /// Range of an edge's turn relative to a facet's own: half of it, or less if its neighbour is coarse too, or a whole
@@ -45,7 +45,12 @@ impl Tangents {
 /// Vertices per job.
 const JOB: usize = 1 << 15;
 
-fn is_tangent(directions: &Directions<'_>, ends: [u32; 2], sides: &[Side], crease: f64) -> bool {
+fn is_tangent(
+    directions: &Directions<'_>,
+    ends: [u32; 2],
+    sides: &[EdgeSide],
+    crease: f64,
+) -> bool {
     let [a, b] = sides else { return false };
     let items = [a.item(), b.item()];
     let cosine = directions.of(items[0]).dot(directions.of(items[1]));

@@ -17,7 +17,7 @@ use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
 use crate::view::picture_plane::PicturePlane;
-use crate::visibility::object::{Bodies, Edges, Faces, Side, Weld};
+use crate::visibility::object::{Bodies, EdgeSide, Edges, Faces, Weld};
 
 /// Facts about the algorithm.
 pub const INFO: Info = Info {
@@ -122,7 +122,7 @@ fn pieces(
     Pieces { all, ..Pieces::default() }
 }
 
-fn inside_polygon(faces: &Faces, sides: &[Side]) -> bool {
+fn inside_polygon(faces: &Faces, sides: &[EdgeSide]) -> bool {
     let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s| s.item());
     sides.len() == 2 && faces.same_polygon(item(0), item(1))
 }

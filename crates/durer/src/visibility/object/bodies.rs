@@ -82,7 +82,7 @@ impl Bodies {
     /// Marks bodies open that have an edge with more triangles on one side than on the other.
     fn open_unbalanced(&mut self, edges: &Edges) {
         for (_, sides) in edges.iter() {
-            let packed = |s: &super::Side| self.of_item[s.item() as usize];
+            let packed = |s: &super::EdgeSide| self.of_item[s.item() as usize];
             if let [a, b] = sides {
                 let (pa, pb) = (packed(a), packed(b));
                 if (pa ^ pb) & 1 == u32::from(a.forward() == b.forward()) {

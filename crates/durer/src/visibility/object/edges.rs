@@ -5,12 +5,12 @@ use crate::target::drawing::EdgeCount;
 
 /// One triangle at an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Side {
+pub struct EdgeSide {
     other: u32,
     packed: u32,
 }
 
-impl Side {
+impl EdgeSide {
     fn new(item: u32, a: u32, b: u32) -> Self {
         Self { other: a.max(b), packed: item << 1 | u32::from(a < b) }
     }
@@ -35,7 +35,7 @@ pub struct Edges {
     /// Start of each vertex's sides; one more at the end.
     starts: Vec<u32>,
     /// Sides by smaller vertex, then larger vertex, then item.
-    sides: Vec<Side>,
+    sides: Vec<EdgeSide>,
 }
 
 impl Edges {
@@ -54,13 +54,13 @@ impl Edges {
             *start = sum;
         }
         // Filled from the end, so that each start reaches its place and items stay in order.
-        let mut sides = vec![Side { other: 0, packed: 0 }; sum as usize];
+        let mut sides = vec![EdgeSide { other: 0, packed: 0 }; sum as usize];
         for item in (0..faces.len() as u32).rev() {
             let Some(t) = faces.triangle(item).filter(|_| filter(item)) else { continue };
             faces.each_side(item, t, |a, b| {
                 let start = &mut starts[a.min(b) as usize];
                 *start -= 1;
-                sides[*start as usize] = Side::new(item, a, b);
+                sides[*start as usize] = EdgeSide::new(item, a, b);
             });
         }
         for w in starts.windows(2) {
@@ -100,14 +100,14 @@ impl Edges {
             return Self::new(faces, |_| true);
         }
         let triangles = new.iter().filter_map(|item| Some((*item, faces.triangle(*item)?)));
-        let mut new: Vec<(u32, Side)> = Vec::new();
+        let mut new: Vec<(u32, EdgeSide)> = Vec::new();
         for (item, t) in triangles {
-            faces.each_side(item, t, |a, b| new.push((a.min(b), Side::new(item, a, b))));
+            faces.each_side(item, t, |a, b| new.push((a.min(b), EdgeSide::new(item, a, b))));
         }
         new.sort_unstable();
-        let renumbered = |side: &Side| {
+        let renumbered = |side: &EdgeSide| {
             let packed = number(side.item())? << 1 | side.packed & 1;
-            Some(Side { packed, ..*side })
+            Some(EdgeSide { packed, ..*side })
         };
         let mut new = new.into_iter().peekable();
         let vertices = faces.points().len();
@@ -147,7 +147,7 @@ impl Edges {
 
     /// Returns each edge once: its vertices, the smaller first, and the triangles at it in item
     /// order.
-    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[EdgeSide])> + '_ {
         self.of_vertices(0..self.starts.len().saturating_sub(1) as u32)
     }
 
@@ -162,7 +162,7 @@ impl Edges {
     }
 
     /// Returns the sides whose smaller vertex is this one.
-    fn of_vertex(&self, vertex: u32) -> &[Side] {
+    fn of_vertex(&self, vertex: u32) -> &[EdgeSide] {
         match self.starts.get(vertex as usize..).and_then(|s| s.first_chunk::<2>()) {
             Some([from, to]) => &self.sides[*from as usize..*to as usize],
             None => &[],
@@ -171,7 +171,7 @@ impl Edges {
 
     /// Returns the triangles at the edge between two vertices, the smaller first; none if there is no
     /// such edge.
-    pub(crate) fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
+    pub(crate) fn at(&self, [a, b]: [u32; 2]) -> &[EdgeSide] {
         let sides = self.of_vertex(a);
         let start = sides.partition_point(|s| s.other < b);
         let end = sides.partition_point(|s| s.other <= b);
@@ -182,7 +182,7 @@ impl Edges {
     pub(crate) fn of_vertices(
         &self,
         vertices: std::ops::Range<u32>,
-    ) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
+    ) -> impl Iterator<Item = ([u32; 2], &[EdgeSide])> + '_ {
         let of = |v: u32| {
             let edges = self.of_vertex(v).chunk_by(|a, b| a.other == b.other);
             edges.map(move |s| ([v, s[0].other], s))

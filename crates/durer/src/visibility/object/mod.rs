@@ -9,7 +9,7 @@ mod stitch;
 pub(crate) mod weld;
 
 pub use bodies::{Bodies, Body};
-pub use edges::{Edges, Side};
+pub use edges::{EdgeSide, Edges};
 pub(crate) use faces::FaceRun;
 pub use faces::Faces;
 pub use orientation::scene::SceneOrientation;

@@ -137,7 +137,7 @@ impl PseudocodeLine for Step {
 
 /// A connected piece of surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Piece {
+pub struct OrientedPiece {
     /// Number of its faces.
     pub faces: usize,
     /// True if each of its edges has two faces.
@@ -154,13 +154,13 @@ pub struct Piece {
 
 /// The orientation of faces.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Orientation {
+pub struct FaceOrientation {
     /// True for each face that has to be turned for all to be right.
     pub turned: Vec<bool>,
     /// Piece of each face.
     pub piece: Vec<usize>,
     /// The pieces, in the order of their first faces.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<OrientedPiece>,
 }
 
 /// A side of a face: ends in order, the face, whether it runs from the first end to the second.
@@ -176,7 +176,7 @@ pub fn orient<F: AsRef<[usize]>>(
     faces: &[F],
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Result<Orientation> {
+) -> Result<FaceOrientation> {
     let corners = faces.iter().flat_map(|face| face.as_ref());
     if let Some(&index) = corners.clone().find(|v| **v >= points.len()) {
         return Err(Error::Dangling { what: "corner", index, count: points.len() });
@@ -199,7 +199,7 @@ pub fn orient<F: AsRef<[usize]>>(
 }
 
 /// Returns pieces and turns in which neighbours agree.
-fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orientation {
+fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> FaceOrientation {
     let sides = |face: usize| {
         let ring = faces[face].as_ref();
         let ends = ring.iter().zip(ring.iter().cycle().skip(1));
@@ -218,7 +218,7 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
     };
     let none = usize::MAX;
     let (piece, turned) = (vec![none; faces.len()], vec![false; faces.len()]);
-    let mut found = Orientation { turned, piece, pieces: Vec::new() };
+    let mut found = FaceOrientation { turned, piece, pieces: Vec::new() };
     for first in 0..faces.len() {
         if found.piece[first] != none {
             continue;
@@ -226,7 +226,8 @@ fn propagate<F: AsRef<[usize]>>(faces: &[F], t: &mut impl Tracer<Step>) -> Orien
         let number = found.pieces.len();
         t.step(|| Step::Begin { face: first, piece: number });
         found.piece[first] = number;
-        let mut piece = Piece { closed: true, orientable: true, ..Piece::default() };
+        let mut piece =
+            OrientedPiece { closed: true, orientable: true, ..OrientedPiece::default() };
         let mut reached = vec![first];
         while let Some(&from) = reached.get(piece.faces) {
             piece.faces += 1;
@@ -264,7 +265,7 @@ fn by_volume<F: AsRef<[usize]>>(
     points: &[DVec3],
     faces: &[F],
     members: &[usize],
-    found: &mut Orientation,
+    found: &mut FaceOrientation,
     t: &mut impl Tracer<Step>,
 ) {
     let Some(piece) = members.first().map(|face| found.piece[*face]) else { return };
@@ -293,7 +294,7 @@ fn by_centroid<F: AsRef<[usize]>>(
     points: &[DVec3],
     faces: &[F],
     members: &[usize],
-    found: &mut Orientation,
+    found: &mut FaceOrientation,
     t: &mut impl Tracer<Step>,
 ) {
     let mut corners: Vec<usize> =
@@ -310,7 +311,7 @@ fn by_centroid<F: AsRef<[usize]>>(
     }
 }
 
-impl Orientation {
+impl FaceOrientation {
     /// Counts the turns of a piece. If the outside is not known, most of its faces are right, or the first
     /// one where as many are turned as are not.
     fn count(&mut self, members: &[usize], outward_is_known: bool) {

@@ -92,7 +92,7 @@ pub fn seen_masks(a: u16, b: u16, priority: u16) -> [u16; 2] {
 
 /// Contribution of a face to a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fragment {
+pub struct FaceFragment {
     /// The sub-pixels that it covers.
     pub mask: u16,
     /// Its smallest and largest depth in the pixel.
@@ -157,7 +157,7 @@ pub fn replay(count: usize, steps: &[Step]) -> (Vec<f64>, f64) {
 
 /// Returns the weight of each fragment in the pixel, and that of the background; they add up to 1. Of fragments that
 /// overlap in depth, each consecutive pair shares the sub-pixels that both cover.
-pub fn weights(fragments: &[Fragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, f64) {
+pub fn weights(fragments: &[FaceFragment], t: &mut impl Tracer<Step>) -> (Vec<f64>, f64) {
     let mut order: Vec<usize> = (0..fragments.len()).collect();
     order.compact_sort_by(|&i, &j| fragments[i].z[0].total_cmp(&fragments[j].z[0]).then(i.cmp(&j)));
     let mut weights = vec![0.0; fragments.len()];
@@ -198,7 +198,7 @@ fn mask_of(left: &[f64; 16]) -> u16 {
 }
 
 /// Returns the pixel's colour over a background.
-pub fn resolve(fragments: &[Fragment], background: Vec4, t: &mut impl Tracer<Step>) -> Vec4 {
+pub fn resolve(fragments: &[FaceFragment], background: Vec4, t: &mut impl Tracer<Step>) -> Vec4 {
     let (weights, rest) = weights(fragments, t);
     let mixed = fragments.iter().zip(weights).map(|(f, weight)| f.color * weight as f32);
     mixed.fold(background * rest as f32, |sum, color| sum + color)

@@ -10,7 +10,7 @@
 
 mod tree;
 
-pub use super::pieces::Side;
+pub use super::pieces::PlaneSide;
 pub use tree::Tree;
 
 use super::{Face, Screen};
@@ -84,14 +84,14 @@ pub enum Step {
         /// The piece whose plane divides.
         piece: u32,
         /// The node above and the side of it; none for the tree's root.
-        below: Option<(u32, Side)>,
+        below: Option<(u32, PlaneSide)>,
     },
     /// A piece was compared with the node's plane.
     Sorted {
         /// The piece.
         piece: u32,
         /// Side of the node's plane that it is on.
-        side: Side,
+        side: PlaneSide,
     },
     /// A piece was split.
     Split {
@@ -105,7 +105,7 @@ pub enum Step {
         /// The node.
         node: u32,
         /// The eye's side.
-        eye: Side,
+        eye: PlaneSide,
     },
     /// A piece is painted over the pixels there.
     Paint {

@@ -139,7 +139,7 @@ impl Expression {
 
 /// Pixels from one column up to another, exclusive, in a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Part {
+pub struct RowPart {
     /// Row.
     pub y: u32,
     /// First column.
@@ -154,14 +154,14 @@ pub enum Step {
     /// A span whose faces have one order by depth.
     Span {
         /// Its pixels.
-        part: Part,
+        part: RowPart,
         /// Its faces, the nearest first.
         faces: Vec<u32>,
     },
     /// The order at both ends differs: the span is divided.
     Divide {
         /// Its pixels.
-        part: Part,
+        part: RowPart,
         /// First column of the second half.
         at: u32,
     },
@@ -179,7 +179,7 @@ pub enum Step {
     /// The span is filled, or stays empty.
     Fill {
         /// Its pixels.
-        part: Part,
+        part: RowPart,
         /// The face that is seen.
         face: Option<u32>,
     },
@@ -275,7 +275,7 @@ pub fn items(
         ends.sort_unstable();
         ends.dedup();
         for span in ends.windows(2) {
-            let part = Part { y, x0: span[0], x1: span[1] };
+            let part = RowPart { y, x0: span[0], x1: span[1] };
             let covers = |&&(x0, x1, _): &&Run| x0 <= part.x0 && part.x1 <= x1;
             let covering: Vec<u32> = row.iter().filter(covers).map(|run| run.2).collect();
             if !covering.is_empty() {
@@ -316,15 +316,15 @@ impl Picture<'_> {
     }
 
     /// Fills the pixels that some faces cover, and divides them where the faces change their order.
-    fn span(&mut self, part: Part, covering: &[u32], t: &mut impl Tracer<Step>) {
+    fn span(&mut self, part: RowPart, covering: &[u32], t: &mut impl Tracer<Step>) {
         let mut waiting = vec![part];
         while let Some(part) = waiting.pop() {
-            let Part { y, x0, x1 } = part;
+            let RowPart { y, x0, x1 } = part;
             let order = self.order(covering, x0, y);
             if x1 - x0 > 1 && order != self.order(covering, x1 - 1, y) {
                 let at = x0 + (x1 - x0) / 2;
                 t.step(|| Step::Divide { part, at });
-                waiting.extend([Part { x0: at, ..part }, Part { x1: at, ..part }]);
+                waiting.extend([RowPart { x0: at, ..part }, RowPart { x1: at, ..part }]);
                 continue;
             }
             t.step(|| Step::Span { part, faces: order.iter().map(|(face, _)| *face).collect() });

@@ -10,7 +10,7 @@
 //! its face and the planes that cut it, so that the picture is the z-buffer's. After a split all marks are cleared.
 //! [`crate::visibility::surface::depth_sort`] is the same for the triangles of models, with tiles for speed.
 
-use super::pieces::{Pieces, Side};
+use super::pieces::{Pieces, PlaneSide};
 use super::{Face, Screen};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
@@ -18,7 +18,7 @@ use crate::math::{DVec3, Plane};
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::{PseudocodeLine, Tracer};
-use crate::visibility::surface::depth_sort::Test;
+use crate::visibility::surface::depth_sort::PaintTest;
 use crate::work::Charge;
 
 /// The facts.
@@ -79,7 +79,7 @@ pub enum Step {
         /// Q.
         other: u32,
         /// The test that lets P be painted before Q, if there is one.
-        passed: Option<Test>,
+        passed: Option<PaintTest>,
     },
     /// Q is marked and moved before P.
     Move {
@@ -118,11 +118,11 @@ impl PseudocodeLine for Step {
         match self {
             Self::Look { .. } => 3,
             Self::Tested { passed, .. } => match passed {
-                Some(Test::Depths) => 5,
-                Some(Test::Boxes) => 6,
-                Some(Test::InFrontOfPlane) => 7,
-                Some(Test::BehindPlane) => 8,
-                Some(Test::Projections | Test::Pixels) => 9,
+                Some(PaintTest::Depths) => 5,
+                Some(PaintTest::Boxes) => 6,
+                Some(PaintTest::InFrontOfPlane) => 7,
+                Some(PaintTest::BehindPlane) => 8,
+                Some(PaintTest::Projections | PaintTest::Pixels) => 9,
                 None => 10,
             },
             Self::Move { .. } => 11,
@@ -237,22 +237,22 @@ impl Sorter<'_> {
     }
 
     /// Returns the first test that lets P be painted before Q.
-    fn test(&self, p: u32, q: u32) -> Option<Test> {
+    fn test(&self, p: u32, q: u32) -> Option<PaintTest> {
         let ([p_low, p_high], [q_low, q_high]) = (self.bounds(p), self.bounds(q));
         if p_low.z > q_high.z {
-            return Some(Test::Depths);
+            return Some(PaintTest::Depths);
         }
         let apart = |k: usize| p_high[k] <= q_low[k] || q_high[k] <= p_low[k];
         if apart(0) || apart(1) {
-            return Some(Test::Boxes);
+            return Some(PaintTest::Boxes);
         }
         if self.is_beside(q, p, 1.0, p, q) {
-            return Some(Test::InFrontOfPlane);
+            return Some(PaintTest::InFrontOfPlane);
         }
         if self.is_beside(p, q, -1.0, p, q) {
-            return Some(Test::BehindPlane);
+            return Some(PaintTest::BehindPlane);
         }
-        (!self.overlap(p, q)).then_some(Test::Projections)
+        (!self.overlap(p, q)).then_some(PaintTest::Projections)
     }
 
     /// Returns whether all corners of a polygon are on one side of another one's plane, for sign 1 on the eye's. Of two
@@ -261,9 +261,9 @@ impl Sorter<'_> {
         let plane = self.plane(of);
         let to_eye = if plane.normal.z > 0.0 { -sign } else { sign };
         let side = self.pieces.side(plane, polygon);
-        let wanted = if to_eye > 0.0 { Side::Front } else { Side::Back };
+        let wanted = if to_eye > 0.0 { PlaneSide::Front } else { PlaneSide::Back };
         let is_first = self.pieces.face(q) < self.pieces.face(p);
-        plane.normal.z != 0.0 && (side == wanted || (side == Side::On && is_first))
+        plane.normal.z != 0.0 && (side == wanted || (side == PlaneSide::On && is_first))
     }
 
     /// Returns whether two polygons have a pixel in common.
@@ -316,7 +316,8 @@ impl Sorter<'_> {
     /// Returns which of two polygons is split, along which, and the plane: the other's own, or one through an edge of
     /// it.
     fn cut(&self, p: u32, q: u32) -> Option<(u32, u32, Plane)> {
-        let splits = |plane: &Plane, polygon: u32| self.pieces.side(plane, polygon) == Side::Both;
+        let splits =
+            |plane: &Plane, polygon: u32| self.pieces.side(plane, polygon) == PlaneSide::Both;
         for (polygon, along) in [(q, p), (p, q)] {
             let plane = self.plane(along);
             if splits(plane, polygon) {

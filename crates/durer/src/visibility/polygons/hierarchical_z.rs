@@ -66,7 +66,7 @@ impl Default for Options {
 
 /// Comparison of a cell or face with an entry of the pyramid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Test {
+pub struct PyramidTest {
     /// Lowest z of the cell or face.
     pub nearest: f64,
     /// Level of the pyramid; 0 is the z-buffer.
@@ -77,7 +77,7 @@ pub struct Test {
     pub farthest: f64,
 }
 
-impl Test {
+impl PyramidTest {
     /// Returns whether the cell or face is hidden.
     pub(crate) fn is_hidden(&self) -> bool {
         self.nearest > self.farthest
@@ -101,7 +101,7 @@ pub enum Step {
         /// Number of the cell.
         cell: usize,
         /// The comparison.
-        test: Test,
+        test: PyramidTest,
     },
     /// A cell is hidden or outside the picture, and left out with its contents.
     LeaveOut {
@@ -115,7 +115,7 @@ pub enum Step {
         /// Its index.
         face: u32,
         /// The comparison.
-        test: Test,
+        test: PyramidTest,
     },
     /// A nearer face is stored for a pixel.
     Store {
@@ -215,10 +215,10 @@ struct Picture<'a> {
 
 impl Picture<'_> {
     /// Compares a box with the finest entry of the pyramid that covers it; `None` outside of the picture.
-    fn test(&self, low: DVec3, high: DVec3) -> Option<Test> {
+    fn test(&self, low: DVec3, high: DVec3) -> Option<PyramidTest> {
         let Entry { level, at: entry } = self.pyramid.covering(low.truncate(), high.truncate())?;
         let farthest = self.pyramid.get(level, entry);
-        Some(Test { nearest: low.z, level, entry, farthest })
+        Some(PyramidTest { nearest: low.z, level, entry, farthest })
     }
 
     fn draw(&mut self, number: u32, t: &mut impl Tracer<Step>) {

@@ -46,7 +46,7 @@ pub use face::Face;
 
 use crate::Result;
 use crate::math::DVec2;
-use crate::raster::polygon::edge_table::Edge;
+use crate::raster::polygon::edge_table::TableEdge;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::NoTrace;
 use crate::work::{Charge, Work};
@@ -80,7 +80,7 @@ impl Screen {
     fn edge_table<'a>(&self, faces: impl IntoIterator<Item = &'a Face>) -> Result<Charge> {
         let corners = faces.into_iter().map(|face| face.corners().len()).max().unwrap_or(0);
         // An edge is in the table, then among the active ones; its corner is in the outline.
-        self.work.charge_for::<([Edge; 2], DVec2)>("edge table of a polygon", corners as u64)
+        self.work.charge_for::<([TableEdge; 2], DVec2)>("edge table of a polygon", corners as u64)
     }
 }
 

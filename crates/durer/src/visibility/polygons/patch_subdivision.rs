@@ -79,14 +79,14 @@ impl Options {
 /// # Guarantees
 /// All coordinates of control points are between −1e100 and 1e100.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Patch {
+pub struct BicubicPatch {
     rows: [[DVec3; 4]; 4],
 }
 
 /// A part of the parameters of a patch: from and to along the rows, from and to across them.
-pub type Part = [[f64; 2]; 2];
+pub type PatchPart = [[f64; 2]; 2];
 
-impl Patch {
+impl BicubicPatch {
     /// Creates a patch from four rows of control points: u grows along each row, v across the rows.
     ///
     /// # Errors
@@ -139,7 +139,7 @@ impl Patch {
     }
 
     /// Returns the four quarters, each with its part of the parameters.
-    fn quarters(&self, [[u0, u1], [v0, v1]]: Part) -> [(Self, Part); 4] {
+    fn quarters(&self, [[u0, u1], [v0, v1]]: PatchPart) -> [(Self, PatchPart); 4] {
         let (u, v) = ((u0 + u1) / 2.0, (v0 + v1) / 2.0);
         let [left, right] = self.halved().map(|half| half.transposed().halved());
         let [near, far] = left.map(|quarter| quarter.transposed());
@@ -213,14 +213,14 @@ pub enum Step {
         /// The patch.
         patch: u32,
         /// The piece.
-        part: Part,
+        part: PatchPart,
     },
     /// A piece is divided into four.
     Divide {
         /// The patch.
         patch: u32,
         /// The piece.
-        part: Part,
+        part: PatchPart,
         /// Number of the centres in the rectangle around it.
         centers: u64,
     },
@@ -229,7 +229,7 @@ pub enum Step {
         /// The patch.
         patch: u32,
         /// The piece.
-        part: Part,
+        part: PatchPart,
         /// Column and row.
         pixel: [u32; 2],
         /// The piece's depth at the centre; none if it does not cover that.
@@ -263,14 +263,14 @@ impl PseudocodeLine for Step {
 
 /// The nearest patch at each pixel's centre.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
+pub struct PatchPicture {
     /// Index of the patch.
     pub items: Pixels<u32>,
     /// Depth of the patch; infinite where there is none.
     pub depths: Pixels<f64>,
 }
 
-impl Picture {
+impl PatchPicture {
     fn new(screen: &Screen) -> Result<Self> {
         Ok(Self { items: screen.plane(NO_ITEM)?, depths: screen.plane(f64::INFINITY)? })
     }
@@ -285,8 +285,8 @@ impl Picture {
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
-pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
-    let mut picture = Picture::new(screen)?;
+pub fn replay(screen: &Screen, steps: &[Step]) -> Result<PatchPicture> {
+    let mut picture = PatchPicture::new(screen)?;
     for step in steps {
         if let Step::Store { pixel, patch, depth } = *step {
             picture.store(pixel, patch, depth);
@@ -301,7 +301,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
 /// use durer::math::DVec3;
 /// use durer::trace::NoTrace;
 /// use durer::visibility::polygons::Screen;
-/// use durer::visibility::polygons::patch_subdivision::{Options, Patch, render};
+/// use durer::visibility::polygons::patch_subdivision::{Options, BicubicPatch, render};
 ///
 /// // A square of six pixels with a bulge towards the eye.
 /// let inner = |k: usize| k == 1 || k == 2;
@@ -309,7 +309,7 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
 ///     let z = if inner(i) && inner(j) { 1.0 } else { 5.0 };
 ///     DVec3::new(2.0 * i as f64, 2.0 * j as f64, z)
 /// };
-/// let patch = Patch::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| point(i, j))))?;
+/// let patch = BicubicPatch::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| point(i, j))))?;
 /// let screen = Screen { width: 7, height: 7, ..Screen::default() };
 /// let found = render(&[patch], &screen, &Options::default(), &mut NoTrace)?;
 /// assert_eq!(found.items.data().iter().filter(|item| **item == 0).count(), 36);
@@ -323,13 +323,13 @@ pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
 /// [`Error::Parameter`] for a flatness that is not positive; [`Error::Limit`] for more divisions or pieces than the
 /// options allow; [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
 pub fn render(
-    patches: &[Patch],
+    patches: &[BicubicPatch],
     screen: &Screen,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Result<Picture> {
+) -> Result<PatchPicture> {
     options.check()?;
-    let mut picture = Picture::new(screen)?;
+    let mut picture = PatchPicture::new(screen)?;
     t.step(|| Step::Clear);
     let (mut pieces, mut stack) = (0u64, Vec::new());
     for (patch, own) in (0..).zip(patches) {
@@ -375,12 +375,12 @@ pub fn render(
 /// Pieces after which the work's cancellation is looked up.
 const CHECKED: u64 = 4096;
 
-impl Picture {
+impl PatchPicture {
     /// Stores a piece at a pixel if it covers the centre, and is nearer than the stored depth.
     fn compare(
         &mut self,
-        piece: &Patch,
-        (patch, part): (u32, Part),
+        piece: &BicubicPatch,
+        (patch, part): (u32, PatchPart),
         pixel @ [x, y]: [u32; 2],
         flatness: f64,
         t: &mut impl Tracer<Step>,

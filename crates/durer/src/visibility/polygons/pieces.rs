@@ -11,7 +11,7 @@ const IN_PLANE: f64 = 1e-10;
 
 /// The side of a plane that a polygon is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Side {
+pub enum PlaneSide {
     /// Side that the normal points to.
     Front,
     /// Behind it.
@@ -66,7 +66,7 @@ impl Pieces {
     }
 
     /// Returns the side of a plane that a piece is on.
-    pub fn side(&self, plane: &Plane, piece: u32) -> Side {
+    pub fn side(&self, plane: &Plane, piece: u32) -> PlaneSide {
         let (mut front, mut back) = (false, false);
         for corner in &self.pieces[piece as usize].corners {
             let distance = plane.evaluate(*corner);
@@ -74,10 +74,10 @@ impl Pieces {
             back |= distance < -self.tolerance;
         }
         match (front, back) {
-            (true, true) => Side::Both,
-            (true, false) => Side::Front,
-            (false, true) => Side::Back,
-            (false, false) => Side::On,
+            (true, true) => PlaneSide::Both,
+            (true, false) => PlaneSide::Front,
+            (false, true) => PlaneSide::Back,
+            (false, false) => PlaneSide::On,
         }
     }
 

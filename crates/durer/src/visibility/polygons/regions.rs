@@ -65,7 +65,7 @@ impl Default for Options {
 
 /// Visible part of one face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Region {
+pub struct FaceRegion {
     /// Its index.
     pub face: u32,
     /// Visible part, in pixels.
@@ -102,7 +102,7 @@ pub enum Step {
         face: u32,
     },
     /// Nothing is in front: this is seen.
-    Seen(Region),
+    Seen(FaceRegion),
 }
 
 impl PseudocodeLine for Step {
@@ -118,7 +118,7 @@ impl PseudocodeLine for Step {
 }
 
 /// Returns the result that a list of steps leads to.
-pub fn replay(steps: &[Step]) -> Vec<Region> {
+pub fn replay(steps: &[Step]) -> Vec<FaceRegion> {
     let seen = |step: &Step| match step {
         Step::Seen(region) => Some(region.clone()),
         _ => None,
@@ -128,18 +128,18 @@ pub fn replay(steps: &[Step]) -> Vec<Region> {
 
 /// Waiting polygons, and one behind all of them that shows where they do not.
 struct List {
-    polygons: Vec<Region>,
-    base: Option<Region>,
+    polygons: Vec<FaceRegion>,
+    base: Option<FaceRegion>,
 }
 
 impl List {
     /// Returns the memory of its regions in bytes.
     fn bytes(&self) -> u64 {
-        self.polygons.iter().chain(&self.base).map(Region::bytes).sum()
+        self.polygons.iter().chain(&self.base).map(FaceRegion::bytes).sum()
     }
 }
 
-impl Region {
+impl FaceRegion {
     /// Returns its memory in bytes.
     fn bytes(&self) -> u64 {
         (size_of::<Self>() + size_of_val(self.shapes.points())) as u64
@@ -173,10 +173,12 @@ pub fn regions(
     options: &Options,
     work: &Work,
     t: &mut impl Tracer<Step>,
-) -> Result<Vec<Region>> {
+) -> Result<Vec<FaceRegion>> {
     let Some(cutter) = Cutter::new(faces) else { return Ok(Vec::new()) };
-    let whole =
-        |(face, own): (u32, &Face)| Region { face, shapes: Shapes::from_rings([own.outline()]) };
+    let whole = |(face, own): (u32, &Face)| FaceRegion {
+        face,
+        shapes: Shapes::from_rings([own.outline()]),
+    };
     let all = (0..).zip(faces).filter(|(_, own)| own.plane().normal.z != 0.0);
     let charged = |list: List| Ok((work.charge("regions of polygons", list.bytes())?, list));
     let mut lists = vec![charged(List { polygons: all.map(whole).collect(), base: None })?];
@@ -225,22 +227,24 @@ impl<'a> Cutter<'a> {
     }
 
     /// Removes the polygon with the nearest corner from a list and returns it.
-    fn take_nearest(&self, polygons: &mut Vec<Region>) -> Option<Region> {
-        let z = |region: &Region| self.faces[region.face as usize].depths()[0];
-        let order = |a: &Region, b: &Region| z(a).total_cmp(&z(b)).then(a.face.cmp(&b.face));
+    fn take_nearest(&self, polygons: &mut Vec<FaceRegion>) -> Option<FaceRegion> {
+        let z = |region: &FaceRegion| self.faces[region.face as usize].depths()[0];
+        let order =
+            |a: &FaceRegion, b: &FaceRegion| z(a).total_cmp(&z(b)).then(a.face.cmp(&b.face));
         let place = (0..polygons.len()).min_by(|&i, &j| order(&polygons[i], &polygons[j]))?;
         Some(polygons.remove(place))
     }
 
     /// Cuts a list along a polygon: returns the remaining inside, with the polygon behind it, and the outside.
-    fn cut(&self, by: Region, list: List, t: &mut impl Tracer<Step>) -> Result<[List; 2]> {
+    fn cut(&self, by: FaceRegion, list: List, t: &mut impl Tracer<Step>) -> Result<[List; 2]> {
         let (mut inside, mut outside) = (Vec::new(), Vec::new());
         for polygon in list.polygons {
             let face = polygon.face;
             let within = self.overlay(&polygon.shapes, &by.shapes, BooleanOp::Intersection)?;
             let beyond = self.overlay(&polygon.shapes, &by.shapes, BooleanOp::Difference)?;
             t.step(|| Step::Cut { face, inside: within.clone(), outside: beyond.clone() });
-            outside.extend(beyond.ring_count().gt(&0).then_some(Region { face, shapes: beyond }));
+            outside
+                .extend(beyond.ring_count().gt(&0).then_some(FaceRegion { face, shapes: beyond }));
             if within.ring_count() == 0 {
                 continue;
             }
@@ -249,14 +253,14 @@ impl<'a> Cutter<'a> {
                 t.step(|| Step::Hidden { face });
             } else {
                 t.step(|| Step::InFront { face });
-                inside.push(Region { face, shapes: before });
+                inside.push(FaceRegion { face, shapes: before });
             }
         }
         // The list's base is behind the polygon, too, so it continues only outside.
         let base = match list.base {
             Some(base) => {
                 let shapes = self.overlay(&base.shapes, &by.shapes, BooleanOp::Difference)?;
-                (shapes.ring_count() > 0).then_some(Region { shapes, ..base })
+                (shapes.ring_count() > 0).then_some(FaceRegion { shapes, ..base })
             }
             None => None,
         };

@@ -77,7 +77,7 @@ pub struct Options {
 
 /// A side of a volume: an edge of an outline, and all points behind it as the light sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct VolumeSide {
     /// Ends of the edge, counter-clockwise around the lit area as the light sees it.
     pub ends: [DVec3; 2],
     /// Directions away from the light at the ends.
@@ -86,7 +86,7 @@ pub struct Side {
     pub weight: i32,
 }
 
-impl Side {
+impl VolumeSide {
     /// Returns a normal that points out of the volume.
     fn normal(&self) -> DVec3 {
         self.away[0].cross(self.ends[1] - self.ends[0])
@@ -155,7 +155,7 @@ pub enum Step {
         /// Its number.
         number: usize,
         /// The side.
-        side: Side,
+        side: VolumeSide,
         /// True if it turns its front to the eye; none if it is seen edge-on and covers nothing.
         front: Option<bool>,
     },
@@ -196,14 +196,14 @@ impl PseudocodeLine for Step {
 
 /// The nearest faces, and in how many shadows they are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
+pub struct ShadowPicture {
     /// Index of the nearest face at each pixel's centre.
     pub items: Pixels<u32>,
     /// Number of volumes that contain the visible point; 0 where nothing is seen.
     pub counts: Pixels<i32>,
 }
 
-impl Picture {
+impl ShadowPicture {
     /// Returns whether a face is seen at a pixel, and is in shadow there.
     pub fn is_dark(&self, x: u32, y: u32) -> bool {
         self.counts.get(x, y).is_some_and(|count| count > 0)
@@ -214,8 +214,8 @@ impl Picture {
 ///
 /// # Errors
 /// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
-pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Picture> {
-    let mut picture = Picture { items: screen.plane(NO_ITEM)?, counts: screen.plane(0)? };
+pub fn replay(screen: &Screen, steps: &[Step]) -> Result<ShadowPicture> {
+    let mut picture = ShadowPicture { items: screen.plane(NO_ITEM)?, counts: screen.plane(0)? };
     for step in steps {
         match *step {
             Step::Pixel { pixel: [x, y], face, count, .. } => {
@@ -261,9 +261,9 @@ pub fn render(
     light: Eye,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Result<Picture> {
+) -> Result<ShadowPicture> {
     let corners = faces.iter().map(|face| face.corners().len() as u64).sum();
-    let _charge = screen.work.charge_for::<(Side, [u64; 8])>("shadow volumes", corners)?;
+    let _charge = screen.work.charge_for::<(VolumeSide, [u64; 8])>("shadow volumes", corners)?;
     let items = z_buffer::items(faces, screen, &mut NoTrace)?;
     let casters = casters(faces, light, options, t);
     let sides = sides(faces, &casters, light);
@@ -290,7 +290,7 @@ pub fn render(
             counting.pass(pixel, point.z, change, t);
         });
     }
-    Ok(Picture { items: counting.items, counts: counting.counts })
+    Ok(ShadowPicture { items: counting.items, counts: counting.counts })
 }
 
 /// A face that casts a shadow.
@@ -315,7 +315,7 @@ fn casters(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Vec<Caster> {
-    use crate::view::cull::Face::{Back, Edge, Front};
+    use crate::view::cull::FaceSide::{Back, Edge, Front};
     let mut found = Vec::new();
     for (face, own) in (0..).zip(faces) {
         let normal = own.plane().normal;
@@ -331,7 +331,7 @@ fn casters(
 }
 
 /// Returns the sides of the volumes of all casters, in the order of the casters' edges.
-fn sides(faces: &[Face], casters: &[Caster], light: Eye) -> Vec<Side> {
+fn sides(faces: &[Face], casters: &[Caster], light: Eye) -> Vec<VolumeSide> {
     let away = |p: DVec3| match light {
         Eye::At(light) => p - light,
         Eye::Along(direction) => direction,
@@ -355,7 +355,7 @@ fn sides(faces: &[Face], casters: &[Caster], light: Eye) -> Vec<Side> {
     }
     let side = |([a, b], count): ([DVec3; 2], i32)| {
         let ends = if count > 0 { [a, b] } else { [b, a] };
-        Side { ends, away: ends.map(away), weight: count.abs() }
+        VolumeSide { ends, away: ends.map(away), weight: count.abs() }
     };
     edges.into_iter().filter(|(_, count)| *count != 0).map(side).collect()
 }

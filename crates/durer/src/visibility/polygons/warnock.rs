@@ -18,7 +18,7 @@ use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::warnock::Division;
-use crate::visibility::surface::window::{Relation, SampleRect};
+use crate::visibility::surface::window::{SampleRect, WindowRelation};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -53,7 +53,7 @@ pub struct Options {
 
 /// A rule by which a window is simple.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Rule {
+pub enum WindowRule {
     /// Rule 1: all polygons are outside.
     Empty,
     /// Rule 2: one polygon is inside, crosses or surrounds the window.
@@ -64,7 +64,7 @@ pub enum Rule {
     Pixel,
 }
 
-impl Rule {
+impl WindowRule {
     /// Returns the rule's number.
     pub const fn number(self) -> u8 {
         match self {
@@ -84,14 +84,14 @@ pub enum Step {
         /// The window, in pixels.
         window: SampleRect,
         /// Relation of each polygon that was not outside of the window around it.
-        relations: Vec<(u32, Relation)>,
+        relations: Vec<(u32, WindowRelation)>,
     },
     /// The window is simple.
     Simple {
         /// The window.
         window: SampleRect,
         /// The rule that holds.
-        rule: Rule,
+        rule: WindowRule,
         /// The polygon that is drawn, if one is.
         face: Option<u32>,
     },
@@ -173,7 +173,7 @@ pub fn items(
         let relations = painter.relations(&window, concerned);
         t.step(|| Step::Look { window, relations: relations.clone() });
         let concerned: Vec<u32> = (relations.iter())
-            .filter(|(_, relation)| *relation != Relation::Outside)
+            .filter(|(_, relation)| *relation != WindowRelation::Outside)
             .map(|(face, _)| *face)
             .collect();
         if let Some((rule, face)) = simple(faces, &window, &relations, &concerned) {
@@ -200,19 +200,20 @@ pub fn items(
 fn simple(
     faces: &[Face],
     window: &SampleRect,
-    relations: &[(u32, Relation)],
+    relations: &[(u32, WindowRelation)],
     concerned: &[u32],
-) -> Option<(Rule, Option<u32>)> {
+) -> Option<(WindowRule, Option<u32>)> {
     match concerned {
-        [] => return Some((Rule::Empty, None)),
-        [face] => return Some((Rule::Single, Some(*face))),
+        [] => return Some((WindowRule::Empty, None)),
+        [face] => return Some((WindowRule::Single, Some(*face))),
         _ => {}
     }
-    let is_surrounding = |(_, relation): &&(u32, Relation)| *relation == Relation::Surrounding;
+    let is_surrounding =
+        |(_, relation): &&(u32, WindowRelation)| *relation == WindowRelation::Surrounding;
     let in_front = |face: &u32| concerned.iter().all(|other| hides(faces, window, *face, *other));
     let mut surrounding = relations.iter().filter(is_surrounding).map(|(face, _)| *face);
     let is_pixel = window.x1 - window.x0 == 1 && window.y1 - window.y0 == 1;
-    let rule = if is_pixel { Rule::Pixel } else { Rule::Surrounded };
+    let rule = if is_pixel { WindowRule::Pixel } else { WindowRule::Surrounded };
     // A polygon that covers the only centre of a pixel surrounds it.
     surrounding
         .clone()
@@ -293,16 +294,16 @@ struct Painter {
 
 impl Painter {
     /// Returns the relation of faces to a window.
-    fn relations(&self, window: &SampleRect, faces: Vec<u32>) -> Vec<(u32, Relation)> {
+    fn relations(&self, window: &SampleRect, faces: Vec<u32>) -> Vec<(u32, WindowRelation)> {
         let size = i64::from(window.x1 - window.x0) * i64::from(window.y1 - window.y0);
         let relation = |face: u32| {
             let cover = &self.covers[face as usize];
             let inside: i64 = cover.within(window).map(|span| i64::from(span.x1 - span.x0)).sum();
             match inside {
-                0 => Relation::Outside,
-                _ if inside == size => Relation::Surrounding,
-                _ if inside == cover.count => Relation::Inside,
-                _ => Relation::Crossing,
+                0 => WindowRelation::Outside,
+                _ if inside == size => WindowRelation::Surrounding,
+                _ if inside == cover.count => WindowRelation::Inside,
+                _ => WindowRelation::Crossing,
             }
         };
         faces.into_iter().map(|face| (face, relation(face))).collect()

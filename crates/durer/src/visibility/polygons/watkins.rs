@@ -13,7 +13,7 @@ use super::{Face, Screen};
 use crate::Result;
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
-use crate::raster::polygon::edge_table::{Edge, table};
+use crate::raster::polygon::edge_table::{TableEdge, table};
 use crate::sorting::CompactSort;
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::{PseudocodeLine, Tracer};
@@ -50,7 +50,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EdgeEntry {
     /// x at the first row, one past the last row, Δx/Δy.
-    pub edge: Edge,
+    pub edge: TableEdge,
     /// The polygon that it bounds.
     pub face: u32,
 }

@@ -3,7 +3,7 @@
 use crate::raster::fixed::SUBPIXELS;
 use crate::raster::span::Span;
 use crate::visibility::surface::setup::ScreenTriangle;
-use crate::visibility::surface::window::{Relation, SampleRect};
+use crate::visibility::surface::window::{SampleRect, WindowRelation};
 
 /// Samples in rows and columns, 2^`shift` a pixel on each axis, at the centres of their squares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,12 +113,12 @@ impl Cover {
 
     /// Returns the relation of the triangle to a window that is not empty; `Outside` is certain,
     /// and so is `Surrounding`.
-    pub fn relation(&self, w: &SampleRect) -> Relation {
+    pub fn relation(&self, w: &SampleRect) -> WindowRelation {
         if self.bounds.and(w).is_empty() {
-            return Relation::Outside;
+            return WindowRelation::Outside;
         }
         if self.bounds.within(w) {
-            return Relation::Inside;
+            return WindowRelation::Inside;
         }
         let (across, down) = (i64::from(w.x1 - 1 - w.x0), i64::from(w.y1 - 1 - w.y0));
         let mut surrounds = true;
@@ -126,11 +126,11 @@ impl Cover {
             let at = self.edge_at(i, w.x0, w.y0);
             let (dx, dy) = (self.step_x[i] * across, self.step_y[i] * down);
             if at + dx.max(0) + dy.max(0) < 0 {
-                return Relation::Outside;
+                return WindowRelation::Outside;
             }
             surrounds &= at + dx.min(0) + dy.min(0) >= 0;
         }
-        if surrounds { Relation::Surrounding } else { Relation::Crossing }
+        if surrounds { WindowRelation::Surrounding } else { WindowRelation::Crossing }
     }
 
     /// Emits the covered samples of a window, row by row.

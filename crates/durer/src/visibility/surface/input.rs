@@ -4,7 +4,7 @@ use crate::scene::Scene;
 use crate::simd::default_level;
 use crate::view::View;
 use crate::visibility::surface::setup::{
-    Assembler, Counts, Coverage, Filter, Run, ScreenTriangle, runs,
+    Assembler, Coverage, Run, ScreenTriangle, TriangleCounts, TriangleFilter, runs,
 };
 use crate::work::Work;
 
@@ -19,13 +19,13 @@ pub struct SurfaceInput<'a> {
     /// The camera and the screen.
     pub view: &'a View,
     /// Filter that chose the triangles.
-    pub filter: Filter,
+    pub filter: TriangleFilter,
     /// Runs of items that share an instance and a material.
     pub(crate) runs: Vec<Run>,
     /// All triangles that may cover a sample.
     pub triangles: Vec<ScreenTriangle>,
     /// Counts of the scene's triangles by their treatment.
-    pub(crate) counts: Counts,
+    pub(crate) counts: TriangleCounts,
     /// Budget for the triangles' memory, and cancellation.
     pub work: Work,
 }
@@ -41,7 +41,7 @@ impl<'a> SurfaceInput<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Limit`] if the scene has too many primitives to number.
-    pub fn new(scene: &'a Scene, view: &'a View, filter: Filter) -> crate::Result<Self> {
+    pub fn new(scene: &'a Scene, view: &'a View, filter: TriangleFilter) -> crate::Result<Self> {
         Self::within(&Work::default(), scene, view, filter)
     }
 
@@ -54,7 +54,7 @@ impl<'a> SurfaceInput<'a> {
         work: &Work,
         scene: &'a Scene,
         view: &'a View,
-        filter: Filter,
+        filter: TriangleFilter,
     ) -> crate::Result<Self> {
         let work = work.part();
         let mut kept = 0;

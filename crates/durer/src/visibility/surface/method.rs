@@ -6,10 +6,10 @@ use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
-use crate::visibility::surface::a_buffer::Mask;
+use crate::visibility::surface::a_buffer::SubpixelMask;
 use crate::visibility::surface::input::{METHOD, SurfaceInput};
 use crate::visibility::surface::rows::active::ActiveList;
-use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::setup::TriangleFilter;
 use crate::visibility::surface::visible::Visible;
 use crate::visibility::surface::{Background, Samples};
 use crate::visibility::surface::{
@@ -66,7 +66,7 @@ pub struct Options {
     /// Samples per pixel of the colour plane, for those methods that can take several.
     pub samples: Samples,
     /// Sub-pixels of the A-buffer's masks.
-    pub mask: Mask,
+    pub mask: SubpixelMask,
     /// True if rays to the lights find shadows; for the ray method.
     pub shadow_rays: bool,
     /// Number of times that a ray may be reflected or refracted; for the ray method.
@@ -84,7 +84,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             samples: Samples::One,
-            mask: Mask::M16,
+            mask: SubpixelMask::M16,
             shadow_rays: false,
             bounces: 0,
             shading: None,
@@ -130,7 +130,7 @@ impl Options {
 
     fn z_buffer(&self, input: &SurfaceInput<'_>) -> z_buffer::Options {
         let Self { samples, shading, background, level, .. } = *self;
-        let Filter { cull, marks, .. } = input.filter;
+        let TriangleFilter { cull, marks, .. } = input.filter;
         let work = input.work.clone();
         z_buffer::Options { samples, cull, marks, shading, background, level, work }
     }

@@ -27,8 +27,8 @@ pub mod z_buffer;
 pub use input::SurfaceInput;
 pub use method::{Options, Step, SurfaceMethod, render_with};
 pub use picture::Options as PictureOptions;
-pub use setup::{Counts, Filter, ScreenTriangle};
-pub use window::{Relation, SampleRect};
+pub use setup::{ScreenTriangle, TriangleCounts, TriangleFilter};
+pub use window::{SampleRect, WindowRelation};
 
 use crate::math::{Vec3, Vec4};
 use crate::shade::color::luminance;

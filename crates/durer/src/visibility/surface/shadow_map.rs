@@ -17,7 +17,7 @@ use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::picture;
 use crate::visibility::surface::rows::active::ActiveList;
 use crate::visibility::surface::rows::nearest::{DepthRow, Masked};
-use crate::visibility::surface::setup::{Coverage, Filter};
+use crate::visibility::surface::setup::{Coverage, TriangleFilter};
 use crate::visibility::surface::visible::with_lighting;
 use crate::work::Work;
 use crate::{Error, Result};
@@ -176,7 +176,7 @@ fn depths(
     view: &View,
     lights: &PreparedLights,
 ) -> Result<Pixels<f32>> {
-    let filter = Filter::new(Cull::None, 0);
+    let filter = TriangleFilter::new(Cull::None, 0);
     let mut input = SurfaceInput::within(work, scene, view, filter)?;
     let count = scene.triangle_count() as u32;
     let throws = |item: u32| item < count && input.run_of(item).coverage != Coverage::Blended;

@@ -2,7 +2,7 @@
 
 /// Relation of a triangle to a window of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Relation {
+pub enum WindowRelation {
     /// It covers no sample.
     Outside,
     /// It is within the window.

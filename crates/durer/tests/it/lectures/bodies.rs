@@ -9,10 +9,10 @@ use durer::target::NO_ITEM;
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::back_face::Eye;
 use durer::visibility::line::face_net::FaceNet;
-use durer::visibility::line::roberts::{self, Body, Values};
+use durer::visibility::line::roberts::{self, ConvexBody, Values};
 use durer::visibility::line::{appel, galimberti_montanari as natures};
-use durer::visibility::polygons::patch_subdivision::{self, Patch};
-use durer::visibility::polygons::portals::{self, Plan, Window};
+use durer::visibility::polygons::patch_subdivision::{self, BicubicPatch};
+use durer::visibility::polygons::portals::{self, Plan, PortalWindow};
 use durer::visibility::polygons::shadow_volumes::{self, Count};
 use durer::visibility::polygons::{Face, Screen, csg, octree};
 use durer::work::Work;
@@ -108,7 +108,7 @@ fn values_of_a_plate(depths: [f64; 2]) -> (Vec<roberts::Step>, usize) {
     let mut triangles = cuboid([0.0, 1.0, 0.0], [10.0, 2.0, 1.0]);
     triangles.extend(cuboid([2.0, 0.0, depths[0]], [4.0, 3.0, depths[1]]));
     let faces: Vec<Vec<DVec3>> = triangles.iter().map(|t| t.to_vec()).collect();
-    let bodies = Body::several(&faces).unwrap();
+    let bodies = ConvexBody::several(&faces).unwrap();
     let mut steps = Recorder::default();
     let eye = Eye::Along(DVec3::NEG_Z);
     roberts::draw(&bodies, eye, &roberts::Options::default(), &Work::default(), &mut steps)
@@ -218,7 +218,7 @@ fn a_patch_is_divided_down_to_one_centre() {
         let z = if inner(i) && inner(j) { 1.0 } else { 5.0 };
         DVec3::new(2.0 * i as f64, 2.0 * j as f64, z)
     };
-    let patch = Patch::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| point(i, j)))).unwrap();
+    let patch = BicubicPatch::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| point(i, j)))).unwrap();
     let screen = Screen { width: 6, height: 6, ..Screen::default() };
     let mut steps = Recorder::default();
     let found =
@@ -252,10 +252,10 @@ fn windows_are_intersected_from_door_to_door() {
     let plan = Plan::of_rooms(&rooms, &doors, 2.0).unwrap();
     let screen = Screen { width: 48, height: 12, ..Screen::default() };
     let columns = |x: f64| {
-        let eye = portals::Eye { at: DVec3::new(x, 0.0, 2.0), cell: 0, focal: 24.0 };
+        let eye = portals::PlanEye { at: DVec3::new(x, 0.0, 2.0), cell: 0, focal: 24.0 };
         let mut steps = Recorder::default();
         portals::visits(&plan, &eye, &screen, &Default::default(), &mut steps).unwrap();
-        let of = |window: Window| [window.low[0], window.high[0]];
+        let of = |window: PortalWindow| [window.low[0], window.high[0]];
         let portal = |s: &Step| match *s {
             Step::Portal { bounds, window, .. } => Some((bounds.map(of), window.map(of))),
             _ => None,

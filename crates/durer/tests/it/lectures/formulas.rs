@@ -12,7 +12,7 @@ use durer::scene::Aabb;
 use durer::shade::shadow::{self, ShadowMap};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, PseudocodeLine, Recorder};
-use durer::view::cull::{self, Containment, ConvexVolume, Face as Turn};
+use durer::view::cull::{self, Containment, ConvexVolume, FaceSide as Turn};
 use durer::view::interior_point::{self, interior_point};
 use durer::view::label::{Obstacle, Placer, Step as Label};
 use durer::visibility::back_face::{self, Eye};

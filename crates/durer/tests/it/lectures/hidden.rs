@@ -3,12 +3,16 @@
 use super::p;
 use durer::math::{DVec2, DVec3};
 use durer::trace::{NoTrace, Recorder};
-use durer::view::cull::{Face, face_along, newell_area};
-use durer::visibility::line::horizon_curves::{Curve, Options, Piece, Seen, Step, draw, replay};
+use durer::view::cull::{FaceSide, face_along, newell_area};
+use durer::visibility::line::horizon_curves::{
+    ColumnCurve, HorizonSide, Options, Step, VisiblePiece, draw, replay,
+};
 use durer::visibility::object::orientation::{self, Outward, orient};
 
-fn curves(all: &[(usize, &[f64])]) -> Vec<Curve> {
-    all.iter().map(|(first, heights)| Curve { first: *first, heights: heights.to_vec() }).collect()
+fn curves(all: &[(usize, &[f64])]) -> Vec<ColumnCurve> {
+    all.iter()
+        .map(|(first, heights)| ColumnCurve { first: *first, heights: heights.to_vec() })
+        .collect()
 }
 
 #[test]
@@ -23,7 +27,10 @@ fn the_far_curve_crosses_the_near_one_at_a_half_and_at_one_and_a_half() {
         .collect();
     assert_eq!(crossings, [p(0.5, 1.0), p(1.5, 1.0)]);
     let far: Vec<_> = pieces.iter().filter(|q| q.curve == 1).map(|q| q.seen).collect();
-    assert_eq!(far, [Seen::Above, Seen::Below, Seen::Below, Seen::Above]);
+    assert_eq!(
+        far,
+        [HorizonSide::Above, HorizonSide::Below, HorizonSide::Below, HorizonSide::Above]
+    );
     assert_eq!(replay(steps.steps()), pieces);
     // Both horizon arrays after the two curves.
     let mut horizons = [[0.0; 2]; 3];
@@ -40,12 +47,12 @@ fn what_lies_between_the_horizons_is_hidden() {
     // A ridge, a valley, and a curve that passes behind both.
     let all = curves(&[(0, &[3.0, 3.0, 3.0]), (0, &[0.0, 0.0, 0.0]), (0, &[2.0, 4.0, -1.0])]);
     let pieces = draw(&all, &Options::columns(3), &mut NoTrace).unwrap();
-    let last: Vec<Piece> = pieces.into_iter().filter(|q| q.curve == 2).collect();
+    let last: Vec<VisiblePiece> = pieces.into_iter().filter(|q| q.curve == 2).collect();
     let ends: Vec<_> = last.iter().map(|q| (q.ends, q.seen)).collect();
     let expected = [
-        ([p(0.5, 3.0), p(1.0, 4.0)], Seen::Above),
-        ([p(1.0, 4.0), p(1.2, 3.0)], Seen::Above),
-        ([p(1.8, 0.0), p(2.0, -1.0)], Seen::Below),
+        ([p(0.5, 3.0), p(1.0, 4.0)], HorizonSide::Above),
+        ([p(1.0, 4.0), p(1.2, 3.0)], HorizonSide::Above),
+        ([p(1.8, 0.0), p(2.0, -1.0)], HorizonSide::Below),
     ];
     assert_eq!(ends.len(), 3);
     for ((found, seen), (points, wanted)) in ends.iter().zip(expected) {
@@ -58,15 +65,16 @@ fn what_lies_between_the_horizons_is_hidden() {
 #[test]
 fn mirrored_curves_give_mirrored_pieces() {
     let mut random = crate::raster_coverage::Random(7);
-    let all: Vec<Curve> = (0..9)
-        .map(|_| Curve {
+    let all: Vec<ColumnCurve> = (0..9)
+        .map(|_| ColumnCurve {
             first: 0,
             heights: (0..20).map(|_| random.next().round() + random.next()).collect(),
         })
         .collect();
     let mut mirrored = all.clone();
     mirrored.iter_mut().for_each(|curve| curve.heights.reverse());
-    let pieces = |curves: &[Curve]| draw(curves, &Options::columns(20), &mut NoTrace).unwrap();
+    let pieces =
+        |curves: &[ColumnCurve]| draw(curves, &Options::columns(20), &mut NoTrace).unwrap();
     let (there, mut back) = (pieces(&all), pieces(&mirrored));
     let turned = |q: DVec2| p(19.0 - q.x, q.y);
     back.iter_mut().for_each(|q| q.ends = [turned(q.ends[1]), turned(q.ends[0])]);
@@ -149,7 +157,7 @@ fn outward_faces_have_a_positive_product() {
         // Seen along (−1, −2, −3), the faces at x = 2, y = 2 and z = 2 are front faces.
         let front = |ring: &[usize; 4]| {
             let ring = ring.map(|corner| points[corner]);
-            face_along(newell_area(&ring), DVec3::new(-1.0, -2.0, -3.0)) == Face::Front
+            face_along(newell_area(&ring), DVec3::new(-1.0, -2.0, -3.0)) == FaceSide::Front
         };
         let fronts: Vec<bool> = faces.iter().map(front).collect();
         assert_eq!(fronts, [true, false, true, false, true, false], "{which:?}");

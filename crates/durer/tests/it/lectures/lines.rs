@@ -3,8 +3,8 @@
 use super::{near, p};
 use durer::clip::line::liang_barsky::{Numbers, Step as Passage};
 use durer::clip::line::{
-    End, HalfPlane, Relation, Segment, cohen_sutherland, cyrus_beck, homogeneous, liang_barsky,
-    midpoint, skala, sobkow_pospisil_yang as by_code,
+    End, HalfPlane, HalfSpaceRelation, Segment, cohen_sutherland, cyrus_beck, homogeneous,
+    liang_barsky, midpoint, skala, sobkow_pospisil_yang as by_code,
 };
 use durer::clip::outcode::Outcode;
 use durer::math::{DVec2, DVec3, IVec2, Rect};
@@ -110,7 +110,7 @@ fn halving_a_thousand_pixels_takes_ten_turns_an_end() {
 }
 
 /// Border, relation and numbers of each step.
-fn borders<P: Copy>(steps: &[Passage<P>]) -> Vec<(usize, Relation, Numbers)> {
+fn borders<P: Copy>(steps: &[Passage<P>]) -> Vec<(usize, HalfSpaceRelation, Numbers)> {
     let border = |step: &Passage<P>| match *step {
         Passage::Border { border, relation, numbers } => Some((border, relation, numbers)),
         _ => None,
@@ -132,13 +132,13 @@ fn half_planes_tell_by_the_signs_of_e() {
     };
     // E = 3·(x − 1) − 4·(y − 1).
     let (seen, relation, e, t) = clip(p(1.0, 4.0), p(9.0, 4.0));
-    assert_eq!((relation, e, t), (Relation::Entering, [-12.0, 12.0], Some(0.5)));
+    assert_eq!((relation, e, t), (HalfSpaceRelation::Entering, [-12.0, 12.0], Some(0.5)));
     assert_eq!(seen, Some(Segment::new(p(5.0, 4.0), p(9.0, 4.0))));
     assert_eq!(clip(p(0.0, 5.0), p(1.0, 6.0)).0, None);
-    assert_eq!(clip(p(5.0, 0.0), p(9.0, 1.0)).1, Relation::Inside);
+    assert_eq!(clip(p(5.0, 0.0), p(9.0, 1.0)).1, HalfSpaceRelation::Inside);
     // A segment in the line itself has E = 0 at both ends; the half-plane is closed, so it is inside.
     let (seen, relation, e, t) = clip(q1, q2);
-    assert_eq!((seen, relation), (Some(Segment::new(q1, q2)), Relation::Inside));
+    assert_eq!((seen, relation), (Some(Segment::new(q1, q2)), HalfSpaceRelation::Inside));
     assert_eq!((e, t), ([0.0, 0.0], None));
 }
 
@@ -185,7 +185,7 @@ fn turning_a_segment_swaps_entering_and_leaving() {
     };
     let (there, back) = (numbers(a, b), numbers(b, a));
     // Outward normal · v: below 0 the line enters, above 0 it leaves.
-    let classes = |all: &[(usize, Relation, Numbers)]| -> Vec<f64> {
+    let classes = |all: &[(usize, HalfSpaceRelation, Numbers)]| -> Vec<f64> {
         all.iter().map(|(_, _, numbers)| numbers.p().signum()).collect()
     };
     assert_eq!(classes(&there), [-1.0, 1.0, -1.0, 1.0]);
@@ -193,15 +193,16 @@ fn turning_a_segment_swaps_entering_and_leaving() {
     for ((border, relation, there), (other, turned, back)) in there.iter().zip(&back) {
         assert_eq!(border, other);
         let expected = match relation {
-            Relation::Entering => Relation::Leaving,
-            Relation::Leaving => Relation::Entering,
+            HalfSpaceRelation::Entering => HalfSpaceRelation::Leaving,
+            HalfSpaceRelation::Leaving => HalfSpaceRelation::Entering,
             same => *same,
         };
         assert_eq!(*turned, expected);
         assert!(near(there.t().unwrap(), 1.0 - back.t().unwrap()));
     }
     // t_e and t_l at the end, and seen from the other end.
-    let last = |all: &[(usize, Relation, Numbers)]| all.last().map(|n| [n.2.lower, n.2.upper]);
+    let last =
+        |all: &[(usize, HalfSpaceRelation, Numbers)]| all.last().map(|n| [n.2.lower, n.2.upper]);
     assert_eq!((last(&there), last(&back)), (Some([0.25, 0.75]), Some([0.25, 0.75])));
 }
 

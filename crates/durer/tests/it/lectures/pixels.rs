@@ -4,9 +4,9 @@ use super::{near, p};
 use durer::curve::Contours;
 use durer::math::{DVec2, DVec3, IVec2};
 use durer::raster::line::{LineRasterizer, Options, Step as Pixel, bresenham};
-use durer::raster::polygon::edge_table::{self, Edge, Step as Row};
+use durer::raster::polygon::edge_table::{self, Step as Row, TableEdge};
 use durer::raster::seed_fill::{
-    Connectivity, Options as How, Run, SeedFill, Step as Filling, boundary_fill,
+    Connectivity, FillRun, Options as How, SeedFill, Step as Filling, boundary_fill,
 };
 use durer::raster::{interpolate, polygon};
 use durer::target::Pixels;
@@ -96,7 +96,7 @@ fn edge_tables_have_the_entries_of_the_lecture() {
     let options = polygon::Options::default();
     edge_table::fill(&triangle(), 16, 16, &options, |_| {}, &mut steps);
     // y_min, y_max, x, Δx/Δy as whole pixels and remainder.
-    let entry = |edge: &Edge| {
+    let entry = |edge: &TableEdge| {
         let rest = edge.remainder as f64 / edge.whole as f64;
         (edge.rows, edge.x, edge.step, (rest * 15.0).round() as i32)
     };
@@ -138,7 +138,7 @@ fn accumulators_step_without_dividing() {
     let mut steps = Recorder::default();
     let options = polygon::Options::default();
     edge_table::fill(&triangle(), 16, 16, &options, |_| {}, &mut steps);
-    let long: Vec<Edge> = steps
+    let long: Vec<TableEdge> = steps
         .steps()
         .iter()
         .filter_map(|step| match *step {
@@ -234,7 +234,7 @@ fn a_stack_of_pixels_keeps_the_order_of_the_recursion() {
     let mut order = Vec::new();
     recursive(&mut image.clone(), 1, 1, &mut order);
     let runs = |steps: &[Filling]| steps.iter().filter_map(Filling::filled).collect::<Vec<_>>();
-    let pixel = |run: &Run| (run.x0 as u32, run.y as u32);
+    let pixel = |run: &FillRun| (run.x0 as u32, run.y as u32);
     let found: Vec<(u32, u32)> = runs(steps.steps()).iter().map(pixel).collect();
     assert_eq!(found, order);
     assert_eq!(order[..3], [(1, 1), (2, 1), (3, 1)]);

@@ -3,8 +3,8 @@
 use super::p;
 use durer::clip::line::HalfPlane;
 use durer::clip::polygon::Operand;
-use durer::clip::polygon::sutherland_hodgman::by_borders::{self, Rule, Step as Edge};
-use durer::clip::polygon::weiler_atherton::{self, Mark, Step as Walk};
+use durer::clip::polygon::sutherland_hodgman::by_borders::{self, EdgeRule, Step as Edge};
+use durer::clip::polygon::weiler_atherton::{self, CrossingMark, Step as Walk};
 use durer::clip::polygon::{
     BooleanOp, Shapes, WindingRule, greiner_hormann, liang_barsky, maillot, naive, overlay,
     sutherland_hodgman,
@@ -41,15 +41,15 @@ fn four_rules_emit_what_they_are_named_for() {
     assert_eq!(left, [s1, a, b, c, s2]);
     let edge = |from, to, rule, emitted| Edge::Edge { border: 0, from, to, rule, emitted };
     let expected = [
-        edge(d, a, Rule::OutIn, [Some(s1), Some(a)]),
-        edge(a, b, Rule::InIn, [None, Some(b)]),
-        edge(b, c, Rule::InIn, [None, Some(c)]),
-        edge(c, d, Rule::InOut, [Some(s2), None]),
+        edge(d, a, EdgeRule::OutIn, [Some(s1), Some(a)]),
+        edge(a, b, EdgeRule::InIn, [None, Some(b)]),
+        edge(b, c, EdgeRule::InIn, [None, Some(c)]),
+        edge(c, d, EdgeRule::InOut, [Some(s2), None]),
         Edge::List { border: 0, vertices: left.clone() },
     ];
     assert_eq!(steps.steps(), expected);
     assert_eq!(by_borders::replay(&[a, b, c, d], steps.steps()), left);
-    assert_eq!(Rule::OutOut.name(), "out→out");
+    assert_eq!(EdgeRule::OutOut.name(), "out→out");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn a_triangle_at_four_borders_has_the_lists_of_the_lecture() {
     };
     // Entries and exits are equally many, and in one list two consecutive vertices are outside: at the bottom, and on
     // the left.
-    assert_eq!([Rule::OutIn, Rule::InOut, Rule::OutOut].map(rules), [4, 4, 2]);
+    assert_eq!([EdgeRule::OutIn, EdgeRule::InOut, EdgeRule::OutOut].map(rules), [4, 4, 2]);
 }
 
 #[test]
@@ -166,14 +166,14 @@ fn weiler_and_atherton_walk_both_lists() {
         &mut steps,
     )
     .unwrap();
-    let listed = |wanted: Operand| -> Vec<(DVec2, Option<Mark>)> {
+    let listed = |wanted: Operand| -> Vec<(DVec2, Option<CrossingMark>)> {
         let of = |step: &Walk| match *step {
             Walk::Listed { list, at, mark } if list == wanted => Some((at, mark)),
             _ => None,
         };
         steps.steps().iter().filter_map(of).collect()
     };
-    let (enters, leaves) = (Some(Mark::Entering), Some(Mark::Leaving));
+    let (enters, leaves) = (Some(CrossingMark::Entering), Some(CrossingMark::Leaving));
     let plain = |range: std::ops::Range<usize>| s[range].iter().map(|&at| (at, None));
     let mut expected: Vec<_> = plain(0..1).chain([(i, leaves)]).chain(plain(1..4)).collect();
     expected.extend([(l, enters)].into_iter().chain(plain(4..6)).chain([(k, leaves)]));
@@ -253,7 +253,7 @@ fn liang_and_barsky_turn_where_an_edge_is_not_seen() {
 /// From below left to above right, past (0, 8): codes with their fifth bit, and the corners that they name.
 #[test]
 fn maillot_goes_around_the_corner_that_an_edge_passes() {
-    use maillot::{Code, Step, Turn};
+    use maillot::{Code, CornerReason, Step};
     let window = Rect::new(p(0.0, 0.0), p(10.0, 8.0)).unwrap();
     let ring = [p(-9.0, -1.0), p(11.0, 21.0), p(-9.0, 21.0)];
     let mut steps = Recorder::default();
@@ -261,7 +261,8 @@ fn maillot_goes_around_the_corner_that_an_edge_passes() {
     let Step::Edge { edge: 0, start, end } = steps.steps()[0] else { panic!() };
     assert_eq!([start, end].map(|code| code.to_string()), ["10101", "11010"]);
     let turn = |corner, turn| Step::Turn { corner, turn };
-    let corners = [turn(p(0.0, 8.0), Turn::CornerToCorner), turn(p(10.0, 8.0), Turn::Basic)];
+    let corners =
+        [turn(p(0.0, 8.0), CornerReason::CornerToCorner), turn(p(10.0, 8.0), CornerReason::Basic)];
     assert_eq!(steps.steps()[1..3], corners);
     // At x = 0 the edge is at 8.9, above the window.
     assert!((-1.0 + 22.0 * 9.0 / 20.0 - 8.9_f64).abs() < 1e-12);

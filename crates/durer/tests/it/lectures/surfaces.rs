@@ -1,7 +1,7 @@
 //! Space and surfaces: outcodes in space, the order of tests, the order of fragment operations, and the classification.
 
 use super::p;
-use durer::clip::outcode::{DepthRange, Outcode};
+use durer::clip::outcode::{ClipDepths, Outcode};
 use durer::explain::{self, ALGORITHMS, Frame, Input, Options};
 use durer::fragment::{
     AlphaTest, Blend, Compare, Fragment, FragmentState, Outcome, Scissor, Stencil, StencilFace,
@@ -11,10 +11,10 @@ use durer::info::{Coherence, Occluder};
 use durer::math::{DVec3, DVec4, Rect, Vec4};
 use durer::target::Framebuffer;
 use durer::trace::{PseudocodeLine, Recorder};
-use durer::visibility::polygons::warnock::{self, Rule, Step as Rules};
+use durer::visibility::polygons::warnock::{self, Step as Rules, WindowRule};
 use durer::visibility::polygons::{Face, Screen};
-use durer::visibility::surface::depth_sort::Test;
-use durer::visibility::surface::{Relation, SampleRect};
+use durer::visibility::surface::depth_sort::PaintTest;
+use durer::visibility::surface::{SampleRect, WindowRelation};
 use std::collections::BTreeSet;
 
 fn frames(name: &str, example: &str) -> Vec<Frame> {
@@ -27,7 +27,7 @@ fn space_has_twenty_seven_regions_of_six_bits() {
     let mut codes = BTreeSet::new();
     for k in 0..27 {
         let [x, y, z] = [sides[k % 3], sides[k / 3 % 3], sides[k / 9]];
-        let code = Outcode::of_homogeneous(DVec4::new(x, y, z, 1.0), DepthRange::default());
+        let code = Outcode::of_homogeneous(DVec4::new(x, y, z, 1.0), ClipDepths::default());
         let outside = [x, y, z].iter().filter(|side| **side != 0.0).count();
         assert_eq!(code.0.count_ones() as usize, outside);
         codes.insert(code.0);
@@ -53,10 +53,15 @@ fn the_and_of_all_codes_rejects_any_polygon() {
 /// the other is marked and moved, and a face already marked is split.
 #[test]
 fn depth_sort_has_its_tests_in_order() {
-    let tests =
-        [Test::Depths, Test::Boxes, Test::InFrontOfPlane, Test::BehindPlane, Test::Projections];
+    let tests = [
+        PaintTest::Depths,
+        PaintTest::Boxes,
+        PaintTest::InFrontOfPlane,
+        PaintTest::BehindPlane,
+        PaintTest::Projections,
+    ];
     assert!(tests.is_sorted());
-    assert_eq!(tests.map(Test::number), ["1", "2a", "2b", "2c", "2d"]);
+    assert_eq!(tests.map(PaintTest::number), ["1", "2a", "2b", "2c", "2d"]);
     let count = |example: &str, kind: &str| {
         frames("depth-sort", example).iter().filter(|frame| frame.kind == kind).count()
     };
@@ -81,17 +86,17 @@ fn warnock_has_four_relations_and_four_rules() {
     let quad = face(&[(-1.0, -1.0), (17.0, -1.0), (17.0, 17.0), (-1.0, 17.0)], 5.0);
     let alone = look(std::slice::from_ref(&quad), 16);
     let whole = SampleRect { x0: 0, y0: 0, x1: 16, y1: 16 };
-    let surrounding = vec![(0, Relation::Surrounding)];
+    let surrounding = vec![(0, WindowRelation::Surrounding)];
     assert_eq!(alone[0], Rules::Look { window: whole, relations: surrounding });
-    assert_eq!(alone[1], Rules::Simple { window: whole, rule: Rule::Single, face: Some(0) });
+    assert_eq!(alone[1], Rules::Simple { window: whole, rule: WindowRule::Single, face: Some(0) });
     assert!(alone[2..].iter().all(|step| matches!(step, Rules::Draw { .. })));
     // A small triangle in front of it in one quarter: three quarters by rule 2, the fourth is subdivided further.
     let triangle = face(&[(1.0, 9.0), (7.5, 9.0), (1.0, 15.5)], 2.0);
     let steps = look(&[quad.clone(), triangle], 16);
-    let both = vec![(0, Relation::Surrounding), (1, Relation::Inside)];
+    let both = vec![(0, WindowRelation::Surrounding), (1, WindowRelation::Inside)];
     assert_eq!(steps[0], Rules::Look { window: whole, relations: both });
     assert_eq!(steps[1], Rules::Divide { window: whole, x: 8, y: 8 });
-    let simple = |rule: Rule| -> Vec<(SampleRect, Option<u32>)> {
+    let simple = |rule: WindowRule| -> Vec<(SampleRect, Option<u32>)> {
         let of_rule = |step: &Rules| match *step {
             Rules::Simple { window, rule: own, face } if own == rule => Some((window, face)),
             _ => None,
@@ -99,12 +104,17 @@ fn warnock_has_four_relations_and_four_rules() {
         steps.iter().filter_map(of_rule).collect()
     };
     let large = |w: &&(SampleRect, Option<u32>)| w.0.x1 - w.0.x0 == 8 && w.1 == Some(0);
-    assert_eq!(simple(Rule::Single).iter().filter(large).count(), 3);
-    assert!(!simple(Rule::Surrounded).is_empty());
-    assert!(simple(Rule::Surrounded).iter().chain(&simple(Rule::Pixel)).all(|w| w.1 == Some(1)));
-    assert!(simple(Rule::Empty).is_empty());
+    assert_eq!(simple(WindowRule::Single).iter().filter(large).count(), 3);
+    assert!(!simple(WindowRule::Surrounded).is_empty());
+    assert!(
+        simple(WindowRule::Surrounded)
+            .iter()
+            .chain(&simple(WindowRule::Pixel))
+            .all(|w| w.1 == Some(1))
+    );
+    assert!(simple(WindowRule::Empty).is_empty());
     let crossing = steps.iter().any(|step| {
-        matches!(step, Rules::Look { relations, .. } if relations.contains(&(1, Relation::Crossing)))
+        matches!(step, Rules::Look { relations, .. } if relations.contains(&(1, WindowRelation::Crossing)))
     });
     assert!(crossing);
     // Two that pierce each other in a single pixel: no larger window is simple. Beside them is nothing.
@@ -121,7 +131,8 @@ fn warnock_has_four_relations_and_four_rules() {
         .collect();
     assert!(numbers.contains(&1) && numbers.contains(&4), "{numbers:?}");
     assert_eq!(
-        [Rule::Empty, Rule::Single, Rule::Surrounded, Rule::Pixel].map(Rule::number),
+        [WindowRule::Empty, WindowRule::Single, WindowRule::Surrounded, WindowRule::Pixel]
+            .map(WindowRule::number),
         [1, 2, 3, 4]
     );
 }

@@ -15,11 +15,11 @@ use durer::target::{Framebuffer, Pixels};
 use durer::trace::Recorder;
 use durer::view::View;
 use durer::view::section::{self, cut_traced};
-use durer::view::warp::{self, HOLE, Source, warp};
+use durer::view::warp::{self, DepthPicture, HOLE, warp};
 use durer::visibility::line::wireframe as wire_lines;
 use durer::visibility::surface::Cull;
-use durer::visibility::surface::Filter;
 use durer::visibility::surface::SurfaceInput;
+use durer::visibility::surface::TriangleFilter;
 use durer::visibility::surface::ray::{self, RayKind};
 use durer::visibility::surface::scan_line_z::{self, Step as Row};
 use durer::visibility::wireframe;
@@ -44,7 +44,7 @@ fn a_row_of_depths_takes_what_is_nearer() {
     let target = eye + DVec3::NEG_Z;
     let camera = Camera { eye, target, up: DVec3::Y, projection, near: 1.0, far: 21.0 };
     let view = View::new(camera, 12, ROWS as u32).unwrap();
-    let input = SurfaceInput::new(&scene, &view, Filter::new(Cull::None, 0)).unwrap();
+    let input = SurfaceInput::new(&scene, &view, TriangleFilter::new(Cull::None, 0)).unwrap();
     let lights = PreparedLights::new(&[], &camera);
     let mut target = Framebuffer::new(12, ROWS as u32).with_items();
     let mut steps = Recorder::default();
@@ -88,7 +88,7 @@ fn rays_hit_a_triangle_by_its_weights() {
     // Three rows of pixels: the ray of the upper one rises by 4 where it advances by 3.
     let camera = along_z(2.0, 1.0, 10.0);
     let view = View::new(camera, 3, 3).unwrap();
-    let input = SurfaceInput::new(&scene, &view, Filter::new(Cull::None, 0)).unwrap();
+    let input = SurfaceInput::new(&scene, &view, TriangleFilter::new(Cull::None, 0)).unwrap();
     let lights = PreparedLights::new(&[], &camera);
     let options = ray::Options { reflections: true, ..ray::Options::default() };
     let mut steps = Recorder::default();
@@ -243,7 +243,7 @@ fn near_pixels_move_further_than_far_ones() {
     let colors = (0..WIDTH).map(|x| [if is_body(x) { 200 } else { 90 }, 0, 0, 255]).collect();
     let depth = Pixels::from_data(WIDTH, 1, depths).unwrap();
     let color = Pixels::from_data(WIDTH, 1, colors).unwrap();
-    let source = Source { color: &color, depth: &depth, camera: from };
+    let source = DepthPicture { color: &color, depth: &depth, camera: from };
     let mut steps = Recorder::default();
     let found = warp(&[source], &to, [WIDTH, 1], &Default::default(), &mut steps).unwrap();
     let moves = steps.steps().iter().filter_map(|s| match *s {

@@ -2,7 +2,7 @@
 //!
 //! Neighbours agree, because only a point and an edge themselves decide whether they are near.
 
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::polygon::rectangle::Near;
 use crate::clip::polygon::rectangle::tree::Tree;
 use crate::clip::polygon::{Shapes, Vertex};
@@ -15,7 +15,7 @@ use std::ops::Range;
 pub(super) struct Subject<'a> {
     input: &'a Shapes,
     /// Shapes with more vertices, if there are any, and the source of each point.
-    divided: Option<(Shapes, Vec<Source>)>,
+    divided: Option<(Shapes, Vec<VertexSource>)>,
 }
 
 impl<'a> Subject<'a> {
@@ -35,19 +35,19 @@ impl<'a> Subject<'a> {
     }
 
     /// Returns the source of a point.
-    pub fn source(&self, index: usize) -> Source {
+    pub fn source(&self, index: usize) -> VertexSource {
         let divided = self.divided.as_ref();
         divided
             .and_then(|(_, sources)| sources.get(index).copied())
-            .unwrap_or(Source::Vertex(index))
+            .unwrap_or(VertexSource::Vertex(index))
     }
 
     /// Returns the edge of the input that the edge from a point belongs to, by its points' indices.
     pub fn edge(&self, index: usize) -> [usize; 2] {
         match self.source(index) {
-            Source::Cut { from, to, .. } => [from, to],
-            Source::Vertex(from) => [from, self.input.next_point(from)],
-            Source::Corner => [index, index],
+            VertexSource::Cut { from, to, .. } => [from, to],
+            VertexSource::Vertex(from) => [from, self.input.next_point(from)],
+            VertexSource::Corner => [index, index],
         }
     }
 }
@@ -57,12 +57,12 @@ impl<'a> Subject<'a> {
 pub(super) struct Mask {
     pub near: Near,
     /// Source of each point in the subject.
-    pub sources: Vec<Source>,
+    pub sources: Vec<VertexSource>,
 }
 
 impl Mask {
     pub fn new(near: Near) -> Self {
-        let sources = vec![Source::Corner; near.shapes.points().len()];
+        let sources = vec![VertexSource::Corner; near.shapes.points().len()];
         Self { near, sources }
     }
 
@@ -235,19 +235,19 @@ fn divide_mask(input: &Shapes, mask: &Mask, touches: &Touches) -> Mask {
     let mut points = mask.near.shapes.points().to_vec();
     for &(vertex, ours) in &touches.same {
         points[vertex] = input.points()[ours];
-        sources[vertex] = Source::Vertex(ours);
+        sources[vertex] = VertexSource::Vertex(ours);
     }
     let mut divided = Mask::default();
     let mut inserted = touches.on_mask.iter().peekable();
     rebuild(&mask.near.shapes, &mut divided.near.shapes, |k, ring| {
-        let mut push = |p: DVec2, source: Source| {
+        let mut push = |p: DVec2, source: VertexSource| {
             ring.push(p);
             divided.near.lines.push(mask.near.lines[k]);
             divided.sources.push(source);
         };
         push(points[k], sources[k]);
         while let Some(&(_, ours)) = inserted.next_if(|touch| touch.0 == k) {
-            push(input.points()[ours], Source::Vertex(ours));
+            push(input.points()[ours], VertexSource::Vertex(ours));
         }
     });
     divided
@@ -270,13 +270,13 @@ fn divide_subject<'a>(input: &'a Shapes, mask: &Mask, touches: &Touches) -> Subj
 pub(super) fn with_points(
     input: &Shapes,
     mut inserted: Vec<(usize, DVec2)>,
-) -> (Shapes, Vec<Source>) {
+) -> (Shapes, Vec<VertexSource>) {
     sort_along(&mut inserted, input, |&p| p);
     let (mut shapes, mut sources) = (Shapes::new(), Vec::new());
     let mut inserted = inserted.into_iter().peekable();
     rebuild(input, &mut shapes, |k, ring| {
         ring.push(input.points()[k]);
-        sources.push(Source::Vertex(k));
+        sources.push(VertexSource::Vertex(k));
         while let Some((_, p)) = inserted.next_if(|touch| touch.0 == k) {
             ring.push(p);
             sources.push(on_edge(input, k, p));
@@ -285,9 +285,9 @@ pub(super) fn with_points(
     (shapes, sources)
 }
 
-fn on_edge(input: &Shapes, edge: usize, p: DVec2) -> Source {
+fn on_edge(input: &Shapes, edge: usize, p: DVec2) -> VertexSource {
     let (a, next) = (input.points()[edge], input.next_point(edge));
-    Source::on_edge(p, (edge, a), (next, input.points()[next]))
+    VertexSource::on_edge(p, (edge, a), (next, input.points()[next]))
 }
 
 /// Makes the same polygons with rings to which `push` adds the points for each point.

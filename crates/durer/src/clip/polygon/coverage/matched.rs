@@ -1,7 +1,7 @@
 //! Insertion of points so that neighbours have the same points on shared borders.
 
 use super::conform::{Edge, OWN_REACH, each_near, with_points};
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::validity::{Touching, is_valid};
 use crate::clip::touch::{are_one, is_within, reach};
@@ -13,7 +13,7 @@ pub struct Matched {
     /// The same polygons, ring by ring.
     pub shapes: Shapes,
     /// Source of each point: a vertex, or a place on an edge.
-    pub sources: Vec<Source>,
+    pub sources: Vec<VertexSource>,
 }
 
 /// Returns the features that gain points because others have points on their edges, or within 32 to 64 ulp of them;

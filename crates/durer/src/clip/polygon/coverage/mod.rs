@@ -19,7 +19,7 @@ use super::overlay::{self, overlay};
 use super::rectangle::{Near, Prepared};
 use super::{BooleanOp, Shapes, WindingRule};
 use crate::Result;
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::math::Rect;
 use crate::trace::NoTrace;
 use crate::work::Work;
@@ -42,12 +42,12 @@ pub struct Options {
 
 /// Polygons that the mask leaves.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Cut {
+pub struct CoverageCut {
     /// Valid polygons, in the order of [`overlay::Output`].
     pub shapes: Shapes,
     /// Source of each point in the subject. Points of the mask are [`Source::Corner`] if they do not lie on
     /// the subject's border.
-    pub sources: Vec<Source>,
+    pub sources: Vec<VertexSource>,
     /// Number of points that stay on the grid, because rings would cross at the exact places.
     pub snapped: usize,
     /// True if the subject is unchanged except for the order of its rings and their first points.
@@ -78,7 +78,12 @@ pub struct Cut {
 ///
 /// # Errors
 /// As [`overlay()`](fn@super::overlay) for the subject's points.
-pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, options: &Options) -> Result<Cut> {
+pub fn cut(
+    subject: &Shapes,
+    mask: &Prepared,
+    op: BooleanOp,
+    options: &Options,
+) -> Result<CoverageCut> {
     let near = subject.bounds().map(|bounds| Near::around(mask, &bounds)).unwrap_or_default();
     let (subject, mask) = conform::conform(subject, Mask::new(near), options.mend);
     solve(&subject, &mask, op, options)
@@ -88,7 +93,12 @@ pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, options: &Options) 
 ///
 /// # Errors
 /// As [`overlay()`](fn@super::overlay).
-pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, options: &Options) -> Result<Cut> {
+pub fn join(
+    first: &Shapes,
+    second: &Shapes,
+    op: BooleanOp,
+    options: &Options,
+) -> Result<CoverageCut> {
     let mask = Mask::new(Near::all(second.clone()));
     if !options.mend {
         return solve(&Subject::plain(first), &mask, op, options);
@@ -111,7 +121,7 @@ pub(crate) fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
     (cell.is_normal() && cell.is_finite()).then_some(cell)
 }
 
-fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, chosen: &Options) -> Result<Cut> {
+fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, chosen: &Options) -> Result<CoverageCut> {
     let bounds = [subject.shapes().bounds(), mask.near.shapes.bounds()];
     let options = overlay::Options {
         subject_rule: chosen.rule,

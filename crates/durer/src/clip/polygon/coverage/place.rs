@@ -1,8 +1,8 @@
 //! From the grid back to exact places.
 
-use super::Cut;
+use super::CoverageCut;
 use super::conform::{Mask, Subject};
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::exact;
 use crate::clip::polygon::Operand;
 use crate::clip::polygon::overlay::{EdgeId, Origin, Output};
@@ -16,7 +16,7 @@ struct Point {
     exact: DVec2,
     /// Position on the grid.
     snapped: DVec2,
-    source: Source,
+    source: VertexSource,
     /// True if it stays there.
     stays: bool,
 }
@@ -29,17 +29,17 @@ impl Point {
 
 /// Moves the points of an overlay to the input's points and to the crossings of its edges; `keep` is the one of the
 /// options.
-pub(super) fn place(subject: &Subject, mask: &Mask, keep: bool, output: Output) -> Cut {
+pub(super) fn place(subject: &Subject, mask: &Mask, keep: bool, output: Output) -> CoverageCut {
     let placer = Placer { subject, mask, keep };
     let points = output.shapes.points().iter().zip(&output.origins);
     let mut points: Vec<Point> = points.map(|(&at, origin)| placer.point(at, origin)).collect();
     let kept = placer.kept(&output, &points);
     let shapes = settled(&output.shapes, &mut points, &kept);
     let left = || points.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(point, _)| point);
-    let sources: Vec<Source> = left().map(|point| point.source).collect();
+    let sources: Vec<VertexSource> = left().map(|point| point.source).collect();
     let snapped = left().filter(|point| point.stays).count();
     let whole = snapped == 0 && is_whole(subject.input(), &shapes, &sources);
-    Cut { shapes, sources, snapped, whole, lost: mask.loses(output.cell) }
+    CoverageCut { shapes, sources, snapped, whole, lost: mask.loses(output.cell) }
 }
 
 struct Placer<'a> {
@@ -62,7 +62,7 @@ impl Placer<'_> {
                 let exact = exact::crossing(self.line(first), self.line(second));
                 let (at, stays) = (exact.unwrap_or(snapped), exact.is_none());
                 let ours = [first, second].into_iter().find(|e| e.operand == Operand::Subject);
-                let source = ours.map_or(Source::Corner, |edge| self.source(edge, at));
+                let source = ours.map_or(VertexSource::Corner, |edge| self.source(edge, at));
                 Point { exact: at, snapped, source, stays }
             }
         }
@@ -77,10 +77,10 @@ impl Placer<'_> {
         }
     }
 
-    fn source(&self, edge: EdgeId, at: DVec2) -> Source {
+    fn source(&self, edge: EdgeId, at: DVec2) -> VertexSource {
         let [from, to] = self.subject.edge(edge.from);
         let points = self.subject.input().points();
-        Source::on_edge(at, (from, points[from]), (to, points[to]))
+        VertexSource::on_edge(at, (from, points[from]), (to, points[to]))
     }
 
     /// Returns for each point whether it is needed. Not needed are points that coincide with the next of their ring,
@@ -95,7 +95,8 @@ impl Placer<'_> {
                 let next = if k + 1 < range.end { k + 1 } else { range.start };
                 let before = if k > range.start { k - 1 } else { range.end - 1 };
                 let at = |k: usize| points[k].place();
-                let drop = at(k) == at(next) && !matches!(points[k].source, Source::Vertex(_))
+                let drop = at(k) == at(next)
+                    && !matches!(points[k].source, VertexSource::Vertex(_))
                     || !self.keep
                         && self.runs_along(&output.origins[k], &points[k], at(before), at(next));
                 if drop && left > 3 {
@@ -112,7 +113,7 @@ impl Placer<'_> {
         let Origin::Vertex { operand: Operand::Clip, .. } = origin else {
             return false;
         };
-        if !matches!(point.source, Source::Cut { .. }) {
+        if !matches!(point.source, VertexSource::Cut { .. }) {
             return false;
         }
         let shapes = &self.mask.near.shapes;
@@ -162,10 +163,10 @@ fn built(output: &Shapes, points: &[Point], kept: &[bool]) -> Shapes {
 }
 
 /// Returns whether the result has the subject's points, edges and rings and no others.
-fn is_whole(input: &Shapes, shapes: &Shapes, sources: &[Source]) -> bool {
+fn is_whole(input: &Shapes, shapes: &Shapes, sources: &[VertexSource]) -> bool {
     let counts =
         |shapes: &Shapes| (shapes.points().len(), shapes.ring_count(), shapes.polygon_count());
-    let all_vertices = sources.iter().all(|source| matches!(source, Source::Vertex(_)));
+    let all_vertices = sources.iter().all(|source| matches!(source, VertexSource::Vertex(_)));
     all_vertices && counts(input) == counts(shapes) && edges(input) == edges(shapes)
 }
 

@@ -3,7 +3,7 @@
 use super::border::exact_cut;
 use super::{Extent, extent, non_finite};
 use crate::Result;
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::line::cut_inside;
 use crate::clip::outcode::Outcode;
 use crate::math::{DVec2, Rect};
@@ -18,7 +18,7 @@ pub struct ClippedLines {
     /// Index of the input polyline that each piece is a part of.
     pub lines: Vec<usize>,
     /// The source of each point; empty unless requested.
-    pub sources: Vec<Source>,
+    pub sources: Vec<VertexSource>,
 }
 
 impl ClippedLines {
@@ -76,7 +76,7 @@ pub fn clip_lines(
             Extent::Inside => {
                 out.points.extend_from_slice(part);
                 if sources {
-                    out.sources.extend((first..end).map(Source::Vertex));
+                    out.sources.extend((first..end).map(VertexSource::Vertex));
                 }
                 out.end_piece(line);
             }
@@ -139,7 +139,7 @@ fn cut(
             let end = next + run_inside(window, &part[next..]);
             out.points.extend_from_slice(&part[next..end]);
             if sources {
-                out.sources.extend((first + next..first + end).map(Source::Vertex));
+                out.sources.extend((first + next..first + end).map(VertexSource::Vertex));
             }
             next = end;
             if next == part.len() {
@@ -165,7 +165,7 @@ fn cut(
             let point = exact_cut(window, point, [a, b]);
             out.points.push(point);
             if sources {
-                out.sources.push(Source::on_edge(point, (first + k, a), (first + k + 1, b)));
+                out.sources.push(VertexSource::on_edge(point, (first + k, a), (first + k + 1, b)));
             }
         };
         let Some(visible) = cut_inside(window, a, b) else { continue };

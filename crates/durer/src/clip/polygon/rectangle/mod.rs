@@ -26,7 +26,7 @@ pub(crate) use near::Near;
 pub use prepared::Prepared;
 
 use super::Shapes;
-use crate::clip::attribute::{NoSources, Provenance, Source};
+use crate::clip::attribute::{NoSources, Provenance, VertexSource};
 use crate::info::{Class, Info, Occluder};
 use crate::math::{DVec2, Rect};
 use crate::trace::{PseudocodeLine, Tracer};
@@ -164,7 +164,7 @@ pub(crate) fn clip_with_sources(
     shapes: &Shapes,
     _options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Result<(Shapes, Vec<Source>)> {
+) -> Result<(Shapes, Vec<VertexSource>)> {
     run(window, shapes, t)
 }
 

@@ -1,7 +1,7 @@
 //! The part of many polygons near a box, which remembers the edges that it was cut from.
 
 use super::Prepared;
-use crate::clip::attribute::Source;
+use crate::clip::attribute::VertexSource;
 use crate::clip::polygon::Shapes;
 use crate::math::{DVec2, Rect};
 
@@ -49,7 +49,8 @@ impl Near {
             let range = near.shapes.ring_range(ring);
             for k in range.clone() {
                 let next = if k + 1 < range.end { k + 1 } else { range.start };
-                let ends = [k, next].map(|k| sources.get(k).copied().unwrap_or(Source::Corner));
+                let ends =
+                    [k, next].map(|k| sources.get(k).copied().unwrap_or(VertexSource::Corner));
                 if let Some(line) = common_edge(ends).and_then(line) {
                     near.lines[k] = line;
                 }
@@ -60,13 +61,13 @@ impl Near {
 }
 
 /// Returns the edge that was cut at one or both of its ends, if both are of one edge.
-fn common_edge(ends: [Source; 2]) -> Option<[usize; 2]> {
+fn common_edge(ends: [VertexSource; 2]) -> Option<[usize; 2]> {
     match ends {
-        [Source::Cut { from, to, .. }, Source::Vertex(v)]
-        | [Source::Vertex(v), Source::Cut { from, to, .. }] => {
+        [VertexSource::Cut { from, to, .. }, VertexSource::Vertex(v)]
+        | [VertexSource::Vertex(v), VertexSource::Cut { from, to, .. }] => {
             (v == from || v == to).then_some([from, to])
         }
-        [Source::Cut { from, to, .. }, Source::Cut { from: a, to: b, .. }] => {
+        [VertexSource::Cut { from, to, .. }, VertexSource::Cut { from: a, to: b, .. }] => {
             ([from, to] == [a, b] || [to, from] == [a, b]).then_some([from, to])
         }
         _ => None,

@@ -8,7 +8,7 @@
 
 use super::rings::{Clipper, Directed, Guide, crosses};
 use super::tree::Tree;
-use crate::clip::attribute::{NoSources, Provenance, Source};
+use crate::clip::attribute::{NoSources, Provenance, VertexSource};
 use crate::clip::exact;
 use crate::clip::polygon::{Ring, Shapes, signed_area};
 use crate::math::{DVec2, Rect};
@@ -99,7 +99,7 @@ impl Prepared {
     }
 
     /// Clips as [`Self::clip`], and returns the source of every point.
-    pub(crate) fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<Source>) {
+    pub(crate) fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<VertexSource>) {
         self.run(window)
     }
 

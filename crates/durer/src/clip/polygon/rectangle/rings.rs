@@ -2,7 +2,7 @@
 
 use super::Step;
 use super::border::{BorderPoint, corners, exact_cut};
-use crate::clip::attribute::{Provenance, Source};
+use crate::clip::attribute::{Provenance, VertexSource};
 use crate::clip::exact;
 use crate::clip::line::cut_inside;
 use crate::clip::polygon::{Ring, Shapes, signed_area};
@@ -184,7 +184,7 @@ impl<P: Provenance> Clipper<P> {
             || (a.y >= max.y && b.y >= max.y)
     }
 
-    fn push(&mut self, point: DVec2, source: impl FnOnce() -> Source) {
+    fn push(&mut self, point: DVec2, source: impl FnOnce() -> VertexSource) {
         self.points.push(point);
         self.point_sources.push(source);
     }
@@ -224,7 +224,7 @@ impl<P: Provenance> Clipper<P> {
     fn collect_island(&mut self, ring: &Directed<'_>) {
         let from = self.points.len();
         for k in 0..ring.ring.len() {
-            self.push(ring.point(k), || Source::Vertex(ring.source(k)));
+            self.push(ring.point(k), || VertexSource::Vertex(ring.source(k)));
         }
         self.islands.push(from..self.points.len());
     }
@@ -251,7 +251,7 @@ impl<P: Provenance> Clipper<P> {
         while self.strictly_inside(b) {
             k += 1;
             if self.points.last() != Some(&b) {
-                self.push(b, || Source::Vertex(ring.source(k)));
+                self.push(b, || VertexSource::Vertex(ring.source(k)));
             }
             before = b;
             b = ring.point(k + 1);
@@ -278,7 +278,7 @@ impl<P: Provenance> Clipper<P> {
     fn push_end(&mut self, ring: &Directed<'_>, k: usize, point: DVec2) {
         let (a, b) = (ring.point(k), ring.point(k + 1));
         let (from, to) = (ring.source(k), ring.source(k + 1));
-        self.push(point, || Source::on_edge(point, (from, a), (to, b)));
+        self.push(point, || VertexSource::on_edge(point, (from, a), (to, b)));
     }
 
     /// Returns the window's middle: inside of those rings that have no edge in the window and are
@@ -338,7 +338,7 @@ impl<P: Provenance> Clipper<P> {
         }
         let from = self.points.len();
         for corner in corners(&self.window) {
-            self.push(corner, || Source::Corner);
+            self.push(corner, || VertexSource::Corner);
         }
         std::iter::once(from..self.points.len()).collect()
     }
@@ -398,7 +398,7 @@ impl<P: Provenance> Clipper<P> {
         for side in leaving + 1..=entering + round {
             let corner = corners[side % 4];
             if self.points.last() != Some(&corner) && self.points.get(from) != Some(&corner) {
-                self.push(corner, || Source::Corner);
+                self.push(corner, || VertexSource::Corner);
             }
         }
     }

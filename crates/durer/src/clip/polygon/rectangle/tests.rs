@@ -177,7 +177,7 @@ fn laws(w: &Rect, shapes: &Shapes) -> Result<(), TestCaseError> {
     }
     let corners = [w.min(), w.max(), p(w.min().x, w.max().y), p(w.max().x, w.min().y)];
     for (source, point) in sources.iter().zip(points) {
-        prop_assert!(*source != Source::Corner || corners.contains(point));
+        prop_assert!(*source != VertexSource::Corner || corners.contains(point));
     }
 
     // A second clip changes only the starting vertex.
@@ -225,9 +225,9 @@ proptest! {
         let mut last = -1.0;
         for source in &got.sources {
             let at = match *source {
-                Source::Vertex(i) => i as f64,
-                Source::Cut { from, to, t } => from as f64 + (to - from) as f64 * t,
-                Source::Corner => f64::NAN,
+                VertexSource::Vertex(i) => i as f64,
+                VertexSource::Cut { from, to, t } => from as f64 + (to - from) as f64 * t,
+                VertexSource::Corner => f64::NAN,
             };
             prop_assert!(at >= last, "{:?}", got.sources);
             last = at;

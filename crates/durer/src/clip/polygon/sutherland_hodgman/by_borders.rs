@@ -3,7 +3,7 @@
 //! The cuts are those of the chain of stages, so the ring is the same but may begin at another vertex. Four rules cover
 //! the two ends of an edge; the first edge leads from the last vertex to the first.
 
-use super::{Vertex, cut, finite_vertices};
+use super::{MixableVertex, cut, finite_vertices};
 use crate::Result;
 use crate::clip::line::HalfSpace;
 use crate::trace::{PseudocodeLine, Tracer};
@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 
 /// Rule for an edge, by the sides of a border that its two ends are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Rule {
+pub enum EdgeRule {
     /// Both inside: the end is emitted.
     InIn,
     /// The edge leaves: its cut is emitted.
@@ -22,7 +22,7 @@ pub enum Rule {
     OutOut,
 }
 
-impl Rule {
+impl EdgeRule {
     fn of(from_inside: bool, to_inside: bool) -> Self {
         match (from_inside, to_inside) {
             (true, true) => Self::InIn,
@@ -55,7 +55,7 @@ pub enum Step<V> {
         /// End of the edge.
         to: V,
         /// Rule that applies to the edge.
-        rule: Rule,
+        rule: EdgeRule,
         /// Emitted vertices: the cut, and the end. There is no cut if an end lies on the border
         /// itself.
         emitted: [Option<V>; 2],
@@ -73,10 +73,10 @@ impl<V> PseudocodeLine for Step<V> {
     /// Returns the line of [`super::INFO`]'s pseudocode that runs, counted from 1.
     fn line(&self) -> usize {
         match self {
-            Self::Edge { rule: Rule::InIn, .. } => 4,
-            Self::Edge { rule: Rule::InOut, .. } => 5,
-            Self::Edge { rule: Rule::OutIn, .. } => 6,
-            Self::Edge { rule: Rule::OutOut, .. } => 7,
+            Self::Edge { rule: EdgeRule::InIn, .. } => 4,
+            Self::Edge { rule: EdgeRule::InOut, .. } => 5,
+            Self::Edge { rule: EdgeRule::OutIn, .. } => 6,
+            Self::Edge { rule: EdgeRule::OutOut, .. } => 7,
             Self::List { .. } => 9,
         }
     }
@@ -109,7 +109,7 @@ pub fn replay<V: Clone>(ring: &[V], steps: &[Step<V>]) -> Vec<V> {
 ///
 /// # Errors
 /// [`NonFinite`](crate::Error::NonFinite) for a vertex with a NaN or infinite coordinate.
-pub fn clip<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+pub fn clip<const N: usize, H: HalfSpace<N>, V: MixableVertex<N>>(
     borders: &[H],
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
@@ -124,7 +124,7 @@ pub fn clip<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
 }
 
 /// Clips a list to one border.
-fn past<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+fn past<const N: usize, H: HalfSpace<N>, V: MixableVertex<N>>(
     index: usize,
     border: &H,
     vertices: &[V],
@@ -136,7 +136,7 @@ fn past<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     for to in vertices.iter().copied().map(side) {
         let emitted = [cut(border, from, to), to.1.then_some(to.0)];
         left.extend(emitted.into_iter().flatten());
-        let rule = Rule::of(from.1, to.1);
+        let rule = EdgeRule::of(from.1, to.1);
         t.step(|| Step::Edge { border: index, from: from.0, to: to.0, rule, emitted });
         from = to;
     }

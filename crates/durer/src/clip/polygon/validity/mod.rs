@@ -18,7 +18,7 @@ mod tests;
 mod touches;
 
 pub(super) use edges::{Edge, Meeting, crossing, each_pair, edges_of, meeting};
-pub use steps::{Relation, Step, replay};
+pub use steps::{EdgeRelation, Step, replay};
 pub(super) use touches::{Way, ways};
 
 use super::Shapes;
@@ -183,17 +183,17 @@ pub fn flaws_traced(shapes: &Shapes, t: &mut impl Tracer<Step>) -> Result<Vec<Fl
     let mut touches = Touches::default();
     let all = each_pair(&edges, pairs, |p, q| {
         let relation = match meeting(p, q) {
-            Meeting::Apart => Relation::Apart,
-            Meeting::Crossing => Relation::Flaw(p.flaw(q, Fault::Crossing, crossing(p, q))),
-            Meeting::Overlap(at) => Relation::Flaw(p.flaw(q, Fault::Overlap, at)),
+            Meeting::Apart => EdgeRelation::Apart,
+            Meeting::Crossing => EdgeRelation::Flaw(p.flaw(q, Fault::Crossing, crossing(p, q))),
+            Meeting::Overlap(at) => EdgeRelation::Flaw(p.flaw(q, Fault::Overlap, at)),
             Meeting::Touch(at) if p.ring != q.ring => {
                 touches.add(p, q, at);
-                Relation::Touch(at)
+                EdgeRelation::Touch(at)
             }
-            Meeting::Touch(_) if are_neighbours(p, q, size(p.ring)) => Relation::Neighbours,
-            Meeting::Touch(at) => Relation::Flaw(p.flaw(q, Fault::SelfTouch, at)),
+            Meeting::Touch(_) if are_neighbours(p, q, size(p.ring)) => EdgeRelation::Neighbours,
+            Meeting::Touch(at) => EdgeRelation::Flaw(p.flaw(q, Fault::SelfTouch, at)),
         };
-        if let Relation::Flaw(flaw) = relation {
+        if let EdgeRelation::Flaw(flaw) = relation {
             found.push(flaw);
         }
         t.step(|| Step::Pair { edges: [p, q].map(|edge| [edge.ring, edge.index]), relation });

@@ -6,7 +6,7 @@ use crate::trace::PseudocodeLine;
 
 /// Relation of two edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Relation {
+pub enum EdgeRelation {
     /// Nothing in common.
     Apart,
     /// Neighbours in their ring, with just their vertex in common.
@@ -33,7 +33,7 @@ pub enum Step {
         /// Ring and place of both.
         edges: [[usize; 2]; 2],
         /// Their relation.
-        relation: Relation,
+        relation: EdgeRelation,
     },
     /// A fault other than those of two edges.
     Found(Flaw),
@@ -51,10 +51,10 @@ impl PseudocodeLine for Step {
         match self {
             Self::Ring { .. } => 1,
             Self::Pair { relation, .. } => match relation {
-                Relation::Apart | Relation::Neighbours => 3,
-                Relation::Flaw(Flaw { fault: Fault::SelfTouch, .. }) => 5,
-                Relation::Flaw(_) => 4,
-                Relation::Touch(_) => 6,
+                EdgeRelation::Apart | EdgeRelation::Neighbours => 3,
+                EdgeRelation::Flaw(Flaw { fault: Fault::SelfTouch, .. }) => 5,
+                EdgeRelation::Flaw(_) => 4,
+                EdgeRelation::Touch(_) => 6,
             },
             Self::Found(Flaw { fault, .. }) => match fault {
                 Fault::FewPoints => 1,
@@ -71,7 +71,7 @@ impl PseudocodeLine for Step {
 /// Returns the faults that the steps lead to.
 pub fn replay(steps: &[Step]) -> Vec<Flaw> {
     let flaw = |step: &Step| match *step {
-        Step::Pair { relation: Relation::Flaw(flaw), .. } | Step::Found(flaw) => Some(flaw),
+        Step::Pair { relation: EdgeRelation::Flaw(flaw), .. } | Step::Found(flaw) => Some(flaw),
         Step::Pair { .. } | Step::Ring { .. } | Step::Stopped | Step::Sorted { .. } => None,
     };
     let mut flaws: Vec<Flaw> = steps.iter().filter_map(flaw).collect();

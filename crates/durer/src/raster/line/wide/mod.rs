@@ -118,7 +118,7 @@ pub enum Step {
         /// Place of the outline's point.
         point: DVec2,
         /// Part of the stroke that it belongs to.
-        part: Part,
+        part: StrokePart,
     },
 }
 
@@ -126,17 +126,17 @@ impl PseudocodeLine for Step {
     fn line(&self) -> usize {
         match self {
             Self::Ring => 3,
-            Self::Point { part: Part::Join, .. } => 6,
-            Self::Point { part: Part::Side, .. } => 7,
-            Self::Point { part: Part::Pivot, .. } => 8,
-            Self::Point { part: Part::Cap, .. } => 9,
+            Self::Point { part: StrokePart::Join, .. } => 6,
+            Self::Point { part: StrokePart::Side, .. } => 7,
+            Self::Point { part: StrokePart::Pivot, .. } => 8,
+            Self::Point { part: StrokePart::Cap, .. } => 9,
         }
     }
 }
 
 /// Part of a stroke that a point of its outline belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum StrokePart {
     /// The end of a piece's offset line, or where two of them meet.
     Side,
     /// The path through the vertex, on the inner side of a corner beside short pieces.
@@ -232,7 +232,7 @@ fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
         if i == 0 {
             t.step(|| Step::Ring);
         }
-        t.step(|| Step::Point { vertex: *point, point: *point, part: Part::Cap });
+        t.step(|| Step::Point { vertex: *point, point: *point, part: StrokePart::Cap });
     }
 }
 

@@ -8,7 +8,7 @@
 //! that the pen sweeps beyond the centre of a tight bend is near only to the ends of the curve.
 
 use super::contour::{Contour, Piece, Vertex};
-use super::{Cap, Join, Part, Step, Stroke};
+use super::{Cap, Join, Step, Stroke, StrokePart};
 use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::trace::Tracer;
@@ -101,7 +101,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         self.out.push(self.ring.iter().copied(), true);
     }
 
-    fn push(&mut self, vertex: DVec2, point: DVec2, part: Part) {
+    fn push(&mut self, vertex: DVec2, point: DVec2, part: StrokePart) {
         if self.ring.last() != Some(&point) {
             self.t.step(|| Step::Point { vertex, point, part });
             self.ring.push(point);
@@ -147,16 +147,16 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         match vertex.corner {
             Some((arrive, leave)) if !self.is_smooth(arrive, leave) => {
                 if arrive == before.along && leave == after.along {
-                    self.corner(p, before, after, self.join, Part::Join);
+                    self.corner(p, before, after, self.join, StrokePart::Join);
                 } else if arrive.perp_dot(leave) > 0.0 {
                     self.inner_curved(p, before, (arrive, leave), after);
                 } else {
                     self.arrive(p, before, arrive);
-                    self.outer(p, arrive, leave, self.join, Part::Join);
+                    self.outer(p, arrive, leave, self.join, StrokePart::Join);
                     self.leave(p, leave, after);
                 }
             }
-            _ => self.corner(p, before, after, Join::Round, Part::Side),
+            _ => self.corner(p, before, after, Join::Round, StrokePart::Side),
         }
     }
 
@@ -166,18 +166,18 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     }
 
     /// Draws a corner between straight pieces.
-    fn corner(&mut self, p: DVec2, before: &Piece, after: &Piece, join: Join, part: Part) {
+    fn corner(&mut self, p: DVec2, before: &Piece, after: &Piece, join: Join, part: StrokePart) {
         let (from, to) = (before.along, after.along);
         if from.perp_dot(to) <= 0.0 {
             self.outer(p, from, to, join, part);
         } else if let Some(meeting) = self.meeting(before, after) {
-            self.push(p, p + meeting, Part::Side);
-        } else if part == Part::Side {
+            self.push(p, p + meeting, StrokePart::Side);
+        } else if part == StrokePart::Side {
             self.sweep(p, from, to);
         } else {
-            self.push(p, p + self.left(from), Part::Side);
-            self.push(p, p, Part::Pivot);
-            self.push(p, p + self.left(to), Part::Side);
+            self.push(p, p + self.left(from), StrokePart::Side);
+            self.push(p, p, StrokePart::Pivot);
+            self.push(p, p + self.left(to), StrokePart::Side);
         }
     }
 
@@ -186,12 +186,12 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     /// far side. It is added in the direction in which all the rest turns.
     fn sweep(&mut self, p: DVec2, from: DVec2, to: DVec2) {
         let wedge = |pen: &mut Self| {
-            pen.push(p, p + pen.left(from), Part::Side);
-            pen.push(p, p, Part::Pivot);
-            pen.push(p, p + pen.left(to), Part::Side);
+            pen.push(p, p + pen.left(from), StrokePart::Side);
+            pen.push(p, p, StrokePart::Pivot);
+            pen.push(p, p + pen.left(to), StrokePart::Side);
         };
         wedge(self);
-        self.outer(p, to, from, Join::Round, Part::Side);
+        self.outer(p, to, from, Join::Round, StrokePart::Side);
         wedge(self);
     }
 
@@ -215,19 +215,19 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     ) {
         let inner = before.along.perp_dot(after.along) > 0.0;
         if let Some(meeting) = self.meeting(before, after).filter(|_| inner) {
-            self.push(p, p + meeting, Part::Side);
+            self.push(p, p + meeting, StrokePart::Side);
             return;
         }
         if before.along.perp_dot(arrive) < 0.0 {
             self.arrive(p, before, arrive);
         } else {
-            self.push(p, p + self.left(before.along), Part::Side);
+            self.push(p, p + self.left(before.along), StrokePart::Side);
         }
-        self.push(p, p, Part::Pivot);
+        self.push(p, p, StrokePart::Pivot);
         if leave.perp_dot(after.along) < 0.0 {
             self.leave(p, leave, after);
         } else {
-            self.push(p, p + self.left(after.along), Part::Side);
+            self.push(p, p + self.left(after.along), StrokePart::Side);
         }
     }
 
@@ -237,7 +237,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
             return;
         }
         self.bend(p, piece.along, end, piece);
-        self.push(p, p + self.left(end), Part::Side);
+        self.push(p, p + self.left(end), StrokePart::Side);
     }
 
     /// Draws the side from a curve's direction at its start to its first piece.
@@ -245,7 +245,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         if start == piece.along {
             return;
         }
-        self.push(p, p + self.left(start), Part::Side);
+        self.push(p, p + self.left(start), StrokePart::Side);
         self.bend(p, start, piece.along, piece);
     }
 
@@ -258,12 +258,12 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
                 self.sweep(p, from, to);
             }
         } else if !small {
-            self.outer(p, from, to, Join::Round, Part::Side);
+            self.outer(p, from, to, Join::Round, StrokePart::Side);
         }
     }
 
     /// Draws the outer side of a corner: everything between the two offset lines.
-    fn outer(&mut self, p: DVec2, from: DVec2, to: DVec2, join: Join, part: Part) {
+    fn outer(&mut self, p: DVec2, from: DVec2, to: DVec2, join: Join, part: StrokePart) {
         let turn = 1.0 + from.dot(to);
         let (first, last) = (self.left(from), self.left(to));
         let sharp = join == Join::Miter && 2.0 <= turn * self.miter;
@@ -281,7 +281,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     }
 
     /// Draws an arc that begins at an offset and turns right: the corners of the lines that touch it.
-    fn arc(&mut self, p: DVec2, from: DVec2, angle: f64, part: Part) {
+    fn arc(&mut self, p: DVec2, from: DVec2, angle: f64, part: StrokePart) {
         let pieces = (angle / self.arc).ceil().max(1.0);
         let step = angle / pieces;
         let (sine, cosine) = libm::sincos(step);
@@ -297,17 +297,17 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     fn cap(&mut self, p: DVec2, along: DVec2, curved: bool) {
         let (left, beyond) = (self.left(along), along * self.half);
         match self.cap {
-            Cap::Round => self.arc(p, left, std::f64::consts::PI, Part::Cap),
+            Cap::Round => self.arc(p, left, std::f64::consts::PI, StrokePart::Cap),
             Cap::Butt => {
-                self.push(p, p + left, Part::Cap);
-                self.push(p, p - left, Part::Cap);
+                self.push(p, p + left, StrokePart::Cap);
+                self.push(p, p - left, StrokePart::Cap);
             }
             Cap::Square => {
                 if curved {
-                    self.push(p, p + left, Part::Cap);
+                    self.push(p, p + left, StrokePart::Cap);
                 }
-                self.push(p, p + left + beyond, Part::Cap);
-                self.push(p, p - left + beyond, Part::Cap);
+                self.push(p, p + left + beyond, StrokePart::Cap);
+                self.push(p, p - left + beyond, StrokePart::Cap);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! From pieces between two points of the grid to long chains.
 
-use super::{Curve, Family, Piece};
+use super::{GridChain, LineFamily, LinePiece};
 use crate::math::{DVec2, DVec3};
 use crate::scene::HeightField;
 use crate::view::picture_plane::PicturePlane;
@@ -10,20 +10,20 @@ use crate::view::picture_plane::PicturePlane;
 const JOIN: f64 = 1e-9;
 
 /// Joins pieces to curves, in the order of families, lines, and along the lines.
-pub fn curves(field: &HeightField, mut pieces: Vec<Piece>) -> Vec<Curve> {
+pub fn curves(field: &HeightField, mut pieces: Vec<LinePiece>) -> Vec<GridChain> {
     pieces.sort_unstable_by(|a, b| {
-        let key = |p: &Piece| (p.family, p.line, p.segment);
+        let key = |p: &LinePiece| (p.family, p.line, p.segment);
         key(a).cmp(&key(b)).then(a.range[0].total_cmp(&b.range[0]))
     });
-    let mut curves: Vec<Curve> = Vec::new();
-    let mut last: Option<Piece> = None;
+    let mut curves: Vec<GridChain> = Vec::new();
+    let mut last: Option<LinePiece> = None;
     for piece in pieces {
         let points = piece.range.map(|t| point(field, &piece, t));
         match (last, curves.last_mut()) {
             (Some(before), Some(curve)) if continues(&before, &piece) => {
                 curve.points.push(points[1]);
             }
-            _ => curves.push(Curve {
+            _ => curves.push(GridChain {
                 family: piece.family,
                 line: piece.line,
                 visible: piece.visible,
@@ -36,7 +36,7 @@ pub fn curves(field: &HeightField, mut pieces: Vec<Piece>) -> Vec<Curve> {
     curves
 }
 
-fn continues(before: &Piece, piece: &Piece) -> bool {
+fn continues(before: &LinePiece, piece: &LinePiece) -> bool {
     let alike = before.family == piece.family
         && before.line == piece.line
         && before.visible == piece.visible
@@ -48,17 +48,17 @@ fn continues(before: &Piece, piece: &Piece) -> bool {
 /// Returns the ends of the segment of a piece.
 pub fn ends(
     field: &HeightField,
-    family: Family,
+    family: LineFamily,
     line: usize,
     segment: usize,
 ) -> [Option<DVec3>; 2] {
     match family {
-        Family::AlongX => [field.point(segment, line), field.point(segment + 1, line)],
-        Family::AlongZ => [field.point(line, segment), field.point(line, segment + 1)],
+        LineFamily::AlongX => [field.point(segment, line), field.point(segment + 1, line)],
+        LineFamily::AlongZ => [field.point(line, segment), field.point(line, segment + 1)],
     }
 }
 
-fn point(field: &HeightField, piece: &Piece, t: f64) -> DVec3 {
+fn point(field: &HeightField, piece: &LinePiece, t: f64) -> DVec3 {
     let [from, to] = ends(field, piece.family, piece.line, piece.segment);
     // Pieces are made of segments whose ends are there.
     let (from, to) = (from.unwrap_or_default(), to.unwrap_or_default());

@@ -52,7 +52,7 @@ pub const INFO: Info = Info {
 
 /// Family of lines of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Family {
+pub enum LineFamily {
     /// Lines along x, on each of which z is constant.
     AlongX,
     /// Lines along z, on each of which x is constant.
@@ -80,9 +80,9 @@ impl Default for Options {
 
 /// A piece of a grid line between two neighbouring points of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct LinePiece {
     /// Its family.
-    pub family: Family,
+    pub family: LineFamily,
     /// The row or column along which it runs.
     pub line: usize,
     /// The point of that line before the piece, from 0.
@@ -99,16 +99,16 @@ pub struct Piece {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// A piece of a line was found to be visible or hidden.
-    Piece(Piece),
+    Piece(LinePiece),
     /// A triangle, with corners in the field's coordinates, was added to the covered area.
     Cover([DVec3; 3]),
 }
 
 /// A chain of pieces of one grid line, all visible or all hidden.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct GridChain {
     /// Its family.
-    pub family: Family,
+    pub family: LineFamily,
     /// The row or column along which it runs.
     pub line: usize,
     /// True if it is seen.
@@ -131,7 +131,7 @@ pub fn curves(
     camera: &Camera,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Result<Vec<Curve>> {
+) -> Result<Vec<GridChain>> {
     camera.check()?;
     let pieces = walk::pieces(field, camera, options, t);
     Ok(chain::curves(field, pieces))

@@ -2,7 +2,7 @@
 
 use super::horizon::Horizon;
 use super::sight::{Picture, Sight, side_of_eye};
-use super::{Family, Options, Piece, Step, chain};
+use super::{LineFamily, LinePiece, Options, Step, chain};
 use crate::math::{DVec2, DVec3};
 use crate::scene::height_field::{cut, part_between};
 use crate::scene::{Camera, HeightField};
@@ -10,11 +10,11 @@ use crate::sorting::CompactSort;
 use crate::trace::Tracer;
 
 /// The four sides of a cell: family, and the corners that they join (bit 0 the column, bit 1 the row).
-const SIDES: [(Family, [usize; 2]); 4] = [
-    (Family::AlongX, [0, 1]),
-    (Family::AlongX, [2, 3]),
-    (Family::AlongZ, [0, 2]),
-    (Family::AlongZ, [1, 3]),
+const SIDES: [(LineFamily, [usize; 2]); 4] = [
+    (LineFamily::AlongX, [0, 1]),
+    (LineFamily::AlongX, [2, 3]),
+    (LineFamily::AlongZ, [0, 2]),
+    (LineFamily::AlongZ, [1, 3]),
 ];
 
 /// Returns all pieces of all requested lines, in the order of finding.
@@ -23,7 +23,7 @@ pub fn pieces(
     camera: &Camera,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Vec<Piece> {
+) -> Vec<LinePiece> {
     let Some(bounds) = field.bounds() else { return Vec::new() };
     let middle = bounds.center();
     let sight = Sight::new(camera, middle);
@@ -44,10 +44,10 @@ pub fn pieces(
 }
 
 /// Returns whether a line is drawn.
-fn wanted(field: &HeightField, options: &Options, family: Family, line: usize) -> bool {
+fn wanted(field: &HeightField, options: &Options, family: LineFamily, line: usize) -> bool {
     let (every, count) = match family {
-        Family::AlongX => (options.every_row, field.rows()),
-        Family::AlongZ => (options.every_column, field.columns()),
+        LineFamily::AlongX => (options.every_row, field.rows()),
+        LineFamily::AlongZ => (options.every_column, field.columns()),
     };
     every > 0 && (line.is_multiple_of(every) || line + 1 == count)
 }
@@ -55,25 +55,25 @@ fn wanted(field: &HeightField, options: &Options, family: Family, line: usize) -
 /// A side of a cell as a part of a line.
 #[derive(Debug, Clone, Copy)]
 struct Place {
-    family: Family,
+    family: LineFamily,
     line: usize,
     segment: usize,
 }
 
 impl Place {
     /// Returns the side that begins at a point.
-    fn from_point(family: Family, column: usize, row: usize) -> Self {
+    fn from_point(family: LineFamily, column: usize, row: usize) -> Self {
         match family {
-            Family::AlongX => Self { family, line: row, segment: column },
-            Family::AlongZ => Self { family, line: column, segment: row },
+            LineFamily::AlongX => Self { family, line: row, segment: column },
+            LineFamily::AlongZ => Self { family, line: column, segment: row },
         }
     }
 
     /// Returns the column and the row of its first point.
     fn point(self) -> [usize; 2] {
         match self.family {
-            Family::AlongX => [self.segment, self.line],
-            Family::AlongZ => [self.line, self.segment],
+            LineFamily::AlongX => [self.segment, self.line],
+            LineFamily::AlongZ => [self.line, self.segment],
         }
     }
 
@@ -82,15 +82,15 @@ impl Place {
         let [column, row] = self.point();
         let first = row * columns + column;
         match self.family {
-            Family::AlongX => [first, first + 1],
-            Family::AlongZ => [first, first + columns],
+            LineFamily::AlongX => [first, first + 1],
+            LineFamily::AlongZ => [first, first + columns],
         }
     }
 
     /// Returns a part of it.
-    fn piece(self, range: [f64; 2], visible: bool, underside: bool) -> Piece {
+    fn piece(self, range: [f64; 2], visible: bool, underside: bool) -> LinePiece {
         let Self { family, line, segment } = self;
-        Piece { family, line, segment, range, visible, underside }
+        LinePiece { family, line, segment, range, visible, underside }
     }
 }
 
@@ -103,7 +103,7 @@ fn segments(
 ) {
     let (columns, rows) = (field.columns(), field.rows());
     for (family, lines, points) in
-        [(Family::AlongX, rows, columns), (Family::AlongZ, columns, rows)]
+        [(LineFamily::AlongX, rows, columns), (LineFamily::AlongZ, columns, rows)]
     {
         for line in (0..lines).filter(|&l| wanted(field, options, family, l)) {
             for segment in 0..points - 1 {
@@ -119,7 +119,7 @@ fn segments(
 }
 
 /// Reports a piece and keeps it.
-fn keep(piece: Piece, pieces: &mut Vec<Piece>, t: &mut impl Tracer<Step>) {
+fn keep(piece: LinePiece, pieces: &mut Vec<LinePiece>, t: &mut impl Tracer<Step>) {
     t.step(|| Step::Piece(piece));
     pieces.push(piece);
 }
@@ -127,7 +127,7 @@ fn keep(piece: Piece, pieces: &mut Vec<Piece>, t: &mut impl Tracer<Step>) {
 fn everything(
     field: &HeightField,
     options: &Options,
-    pieces: &mut Vec<Piece>,
+    pieces: &mut Vec<LinePiece>,
     t: &mut impl Tracer<Step>,
 ) {
     segments(field, options, |place, _, part| keep(place.piece(part, true, false), pieces, t));
@@ -141,7 +141,7 @@ fn at_the_foot(
     eye: DVec3,
     pictures: &[Picture],
     options: &Options,
-    pieces: &mut Vec<Piece>,
+    pieces: &mut Vec<LinePiece>,
     t: &mut impl Tracer<Step>,
 ) {
     let place = |v: f64, [first, last]: [f64; 2], points: usize| {
@@ -193,7 +193,7 @@ struct Walk<'a> {
     sight: Sight,
     picture: &'a Picture,
     options: &'a Options,
-    pieces: &'a mut Vec<Piece>,
+    pieces: &'a mut Vec<LinePiece>,
     horizon: Horizon,
     /// Bits of the segments that are done, by the number of their first point: bit 0 along x, bit 1
     /// along z.
@@ -213,7 +213,7 @@ impl<'a> Walk<'a> {
         sight: Sight,
         picture: &'a Picture,
         options: &'a Options,
-        pieces: &'a mut Vec<Piece>,
+        pieces: &'a mut Vec<LinePiece>,
     ) -> Self {
         let [min, max] = picture.corners();
         let buckets = (field.columns() + field.rows()).saturating_mul(STRIPS).min(1 << 16);
@@ -333,14 +333,14 @@ impl<'a> Walk<'a> {
         &mut self,
         column: usize,
         row: usize,
-        family: Family,
+        family: LineFamily,
         ends: [usize; 2],
         underside: bool,
         t: &mut impl Tracer<Step>,
     ) {
         let [(a, p), (b, q)] = ends.map(|k| self.corner(column, row, k));
         let place = Place::from_point(family, column + (ends[0] & 1), row + (ends[0] >> 1));
-        let bit = if family == Family::AlongX { 1 } else { 2 };
+        let bit = if family == LineFamily::AlongX { 1 } else { 2 };
         if self.done[a] & bit != 0 || !wanted(self.field, self.options, family, place.line) {
             return;
         }

@@ -1,11 +1,11 @@
 //! Parts of a line that are too short to be visible: they are joined to neighbours.
 
-use super::span::Span;
+use super::span::HiddenSpan;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Joins slivers, the shortest first, to the longer neighbour; O(n log n) for n parts.
-pub(super) fn absorb(sliver: f64, spans: &mut Vec<Span>) {
+pub(super) fn absorb(sliver: f64, spans: &mut Vec<HiddenSpan>) {
     if spans.len() > 1 && spans.iter().any(|span| length(span) < sliver) {
         let mut chain = Chain::new(spans, sliver);
         while chain.alive > 1 && chain.absorb_shortest() {}
@@ -14,13 +14,13 @@ pub(super) fn absorb(sliver: f64, spans: &mut Vec<Span>) {
     }
 }
 
-fn length(span: &Span) -> f64 {
+fn length(span: &HiddenSpan) -> f64 {
     span.to - span.from
 }
 
 /// Parts that know their neighbours.
 struct Chain<'a> {
-    spans: &'a mut [Span],
+    spans: &'a mut [HiddenSpan],
     sliver: f64,
     before: Vec<Option<usize>>,
     after: Vec<Option<usize>>,
@@ -32,7 +32,7 @@ struct Chain<'a> {
 }
 
 impl<'a> Chain<'a> {
-    fn new(spans: &'a mut [Span], sliver: f64) -> Self {
+    fn new(spans: &'a mut [HiddenSpan], sliver: f64) -> Self {
         let count = spans.len();
         let mut chain = Self {
             before: (0..count).map(|i| i.checked_sub(1)).collect(),
@@ -111,7 +111,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Computes the same as [`absorb`] by examining all parts each time.
-    fn slowly(sliver: f64, spans: &mut Vec<Span>) {
+    fn slowly(sliver: f64, spans: &mut Vec<HiddenSpan>) {
         while spans.len() > 1 {
             let all = 0..spans.len();
             let shortest =
@@ -144,11 +144,11 @@ mod tests {
             sliver in 0u8..7,
         ) {
             let mut at = 0.0;
-            let mut spans = Vec::<Span>::new();
+            let mut spans = Vec::<HiddenSpan>::new();
             for (length, invisibility) in parts {
                 let from = at;
                 at += f64::from(length);
-                spans.push(Span { from, to: at, invisibility });
+                spans.push(HiddenSpan { from, to: at, invisibility });
             }
             let (mut expected, sliver) = (spans.clone(), f64::from(sliver));
             slowly(sliver, &mut expected);

@@ -8,7 +8,7 @@
 use super::super::page::{Vertex, orient};
 use super::absorb::absorb;
 use super::occluders::Occluder;
-use super::span::Span;
+use super::span::HiddenSpan;
 
 /// The part of a line that one face hides.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,7 +102,7 @@ pub(super) fn spans(
     fold: [f64; 2],
     sliver: f64,
     counted: bool,
-    found: &mut Vec<Span>,
+    found: &mut Vec<HiddenSpan>,
 ) {
     found.clear();
     let mut events: Vec<(f64, i32, i32)> = Vec::with_capacity(covers.len() * 2);
@@ -124,7 +124,7 @@ pub(super) fn spans(
             let invisibility = left.min(right).clamp(least, most) as u32;
             match found.last_mut() {
                 Some(last) if last.invisibility == invisibility => last.to = t,
-                _ => found.push(Span { from: at, to: t, invisibility }),
+                _ => found.push(HiddenSpan { from: at, to: t, invisibility }),
             }
             at = t;
         }
@@ -160,7 +160,7 @@ mod tests {
         let mut found = Vec::new();
         for (covers, hidden) in [(vec![above], 0), (vec![below], 0), (vec![above, below], 1)] {
             spans(&covers, [0.0; 2], 0.0, true, &mut found);
-            assert_eq!(found, [Span { from: 0.0, to: 1.0, invisibility: hidden }]);
+            assert_eq!(found, [HiddenSpan { from: 0.0, to: 1.0, invisibility: hidden }]);
         }
     }
 

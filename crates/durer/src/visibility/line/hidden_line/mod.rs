@@ -25,7 +25,7 @@ mod span;
 mod step;
 
 pub use cover::Cover;
-pub use span::Span;
+pub use span::HiddenSpan;
 pub use step::{Step, replay};
 
 use self::lines::{FeatureLine, Known, Lines, joined};
@@ -383,7 +383,7 @@ fn cut(
     covers: &[Cover],
     fold: [f64; 2],
     hidden: bool,
-    spans: &mut Vec<span::Span>,
+    spans: &mut Vec<span::HiddenSpan>,
     pieces: &mut Vec<Piece>,
 ) {
     let [p, q] = line.ends;

@@ -2,7 +2,7 @@
 
 /// A part of a line that is hidden by one number of faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Span {
+pub struct HiddenSpan {
     /// Start, 0 … 1 along the line.
     pub from: f64,
     /// End along the line.

@@ -4,7 +4,7 @@ use super::super::arrange::{Pieces, arrange, corners};
 use super::super::page::Page;
 use super::super::piece::Piece;
 use super::cover::{Cover, spans};
-use super::span::Span;
+use super::span::HiddenSpan;
 use super::{Options, cut};
 use crate::math::DVec2;
 use crate::target::drawing::{Line, LineClass};
@@ -35,7 +35,7 @@ pub enum Step {
 
 impl Step {
     /// Returns the parts of a line by their invisibility, in their order along it; none for other steps.
-    pub fn spans(&self) -> Vec<Span> {
+    pub fn spans(&self) -> Vec<HiddenSpan> {
         let mut found = Vec::new();
         if let Self::Line { covers, fold, .. } = self {
             spans(covers, *fold, 0.0, true, &mut found);

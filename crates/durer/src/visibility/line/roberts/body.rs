@@ -13,22 +13,22 @@ pub(super) const FLATNESS: f64 = 1e-9;
 /// # Guarantees
 /// All corners are finite and lie on the inside of every plane, or on it; each edge has two faces.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Body {
+pub struct ConvexBody {
     corners: Vec<DVec3>,
     planes: Vec<Plane>,
-    edges: Vec<Edge>,
+    edges: Vec<BodyEdge>,
 }
 
 /// An edge of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Edge {
+pub struct BodyEdge {
     /// Indices of its corners.
     pub corners: [usize; 2],
     /// Indices of the planes of its two faces.
     pub planes: [usize; 2],
 }
 
-impl Body {
+impl ConvexBody {
     /// Creates a body from its faces, each a ring of corners in either direction. Corners are common where they are
     /// equal.
     ///
@@ -105,12 +105,12 @@ impl Body {
     }
 
     /// Returns the edges between faces of different planes, in the order in which the faces have them.
-    pub fn edges(&self) -> &[Edge] {
+    pub fn edges(&self) -> &[BodyEdge] {
         &self.edges
     }
 
     /// Returns the ends of an edge.
-    pub(crate) fn ends(&self, edge: &Edge) -> [DVec3; 2] {
+    pub(crate) fn ends(&self, edge: &BodyEdge) -> [DVec3; 2] {
         edge.corners.map(|corner| self.corners[corner])
     }
 }
@@ -165,8 +165,8 @@ pub(in crate::visibility::line) fn numbered(
 
 /// Returns the edges between two planes in the order of the rings, whose planes are `owners`; `None` if an edge has not
 /// exactly two faces.
-fn edges(rings: &[Vec<usize>], owners: &[usize]) -> Option<Vec<Edge>> {
-    let mut edges: Vec<(Edge, usize)> = Vec::new();
+fn edges(rings: &[Vec<usize>], owners: &[usize]) -> Option<Vec<BodyEdge>> {
+    let mut edges: Vec<(BodyEdge, usize)> = Vec::new();
     let mut known = BTreeMap::new();
     for (ring, &face) in rings.iter().zip(owners) {
         for (&a, &b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
@@ -174,7 +174,7 @@ fn edges(rings: &[Vec<usize>], owners: &[usize]) -> Option<Vec<Edge>> {
                 continue;
             }
             let number = *known.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                edges.push((Edge { corners: [a, b], planes: [face; 2] }, 0));
+                edges.push((BodyEdge { corners: [a, b], planes: [face; 2] }, 0));
                 edges.len() - 1
             });
             let (edge, count) = &mut edges[number];

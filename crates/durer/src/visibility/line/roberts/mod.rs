@@ -17,7 +17,7 @@ mod body;
 mod program;
 mod step;
 
-pub use body::{Body, Edge};
+pub use body::{BodyEdge, ConvexBody};
 pub use step::{Bound, Step, Values, replay};
 
 use crate::Result;
@@ -75,7 +75,7 @@ impl Default for Options {
 
 /// A line with its visible parts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct VisibleLine {
     /// The body that has this edge, twice, or the two bodies that intersect along it.
     pub bodies: [usize; 2],
     /// Its ends, t = 0 and t = 1.
@@ -84,7 +84,7 @@ pub struct Line {
     pub visible: Vec<[f64; 2]>,
 }
 
-impl Line {
+impl VisibleLine {
     /// Returns the ends of the visible parts.
     pub fn parts(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
         let [p, q] = self.ends;
@@ -106,12 +106,12 @@ impl Line {
 /// use durer::math::DVec3;
 /// use durer::trace::NoTrace;
 /// use durer::visibility::back_face::Eye;
-/// use durer::visibility::line::roberts::{Body, Options, draw};
+/// use durer::visibility::line::roberts::{ConvexBody, Options, draw};
 /// use durer::work::Work;
 ///
 /// let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let face = |leave: usize| (0..4).filter(|k| *k != leave).map(|k| corner[k]).collect();
-/// let tetrahedron = Body::new(&[face(0), face(1), face(2), face(3)])?;
+/// let tetrahedron = ConvexBody::new(&[face(0), face(1), face(2), face(3)])?;
 /// let eye = Eye::At(DVec3::splat(9.0));
 /// let lines = draw(&[tetrahedron], eye, &Options::default(), &Work::default(), &mut NoTrace)?;
 /// // The three edges that meet at the origin are behind the face of the three others.
@@ -122,12 +122,12 @@ impl Line {
 /// # Errors
 /// [`Error::Memory`](crate::Error::Memory) if the budget of the work is too small, and its reason if the work is stopped.
 pub fn draw(
-    bodies: &[Body],
+    bodies: &[ConvexBody],
     eye: Eye,
     options: &Options,
     work: &Work,
     t: &mut impl Tracer<Step>,
-) -> Result<Vec<Line>> {
+) -> Result<Vec<VisibleLine>> {
     let eye = match eye {
         Eye::At(at) => EyePoint { at, w: 1.0 },
         Eye::Along(direction) => EyePoint { at: -direction.normalize_or_zero(), w: 0.0 },
@@ -168,22 +168,22 @@ pub fn draw(
 
 /// Lines that are charged to the budget.
 struct Lines {
-    all: Vec<Line>,
+    all: Vec<VisibleLine>,
     charge: Charge,
 }
 
 impl Lines {
     /// Adds a line, of which nothing is hidden yet.
     fn add(&mut self, bodies: [usize; 2], ends: [DVec3; 2]) -> Result<()> {
-        self.charge.grow((size_of::<Line>() + size_of::<[f64; 2]>()) as u64)?;
-        self.all.push(Line { bodies, ends, visible: vec![[0.0, 1.0]] });
+        self.charge.grow((size_of::<VisibleLine>() + size_of::<[f64; 2]>()) as u64)?;
+        self.all.push(VisibleLine { bodies, ends, visible: vec![[0.0, 1.0]] });
         Ok(())
     }
 }
 
 /// Returns the largest distance of a corner from the middle of all.
-fn extent(bodies: &[Body]) -> f64 {
-    let corners = || bodies.iter().flat_map(Body::corners);
+fn extent(bodies: &[ConvexBody]) -> f64 {
+    let corners = || bodies.iter().flat_map(ConvexBody::corners);
     let middle = corners().sum::<DVec3>() / corners().count().max(1) as f64;
     corners().map(|corner| corner.distance(middle)).fold(0.0, f64::max)
 }
@@ -191,7 +191,7 @@ fn extent(bodies: &[Body]) -> f64 {
 /// Adds the edges of a body with at least one visible face.
 fn add_edges(
     lines: &mut Lines,
-    (body, own): (usize, &Body),
+    (body, own): (usize, &ConvexBody),
     eye: &EyePoint,
     small: f64,
     t: &mut impl Tracer<Step>,
@@ -214,7 +214,7 @@ fn add_edges(
 /// common line of two planes enters and leaves both bodies.
 fn add_junctions(
     lines: &mut Lines,
-    (numbers, bodies): ([usize; 2], [&Body; 2]),
+    (numbers, bodies): ([usize; 2], [&ConvexBody; 2]),
     eye: &EyePoint,
     small: f64,
 ) -> Result<()> {
@@ -231,7 +231,7 @@ fn add_junctions(
 
 /// Returns the part of two planes' common line that is in both bodies; `None` where there is none, or only along a
 /// face.
-fn common_part(a: &Plane, b: &Plane, bodies: [&Body; 2], small: f64) -> Option<[DVec3; 2]> {
+fn common_part(a: &Plane, b: &Plane, bodies: [&ConvexBody; 2], small: f64) -> Option<[DVec3; 2]> {
     let along = a.normal.cross(b.normal);
     let square = along.length_squared();
     if square < FLATNESS {
@@ -258,8 +258,8 @@ fn common_part(a: &Plane, b: &Plane, bodies: [&Body; 2], small: f64) -> Option<[
 
 /// Returns the part of a line that a body hides.
 fn compare(
-    (line, own): (usize, &Line),
-    (body, other): (usize, &Body),
+    (line, own): (usize, &VisibleLine),
+    (body, other): (usize, &ConvexBody),
     eye: &EyePoint,
     small: f64,
     t: &mut impl Tracer<Step>,

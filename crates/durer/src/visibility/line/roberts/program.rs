@@ -1,6 +1,6 @@
 //! The linear program of one line and one body.
 
-use super::body::Body;
+use super::body::ConvexBody;
 use super::step::{Bound, Values};
 use crate::math::{DVec3, Plane};
 
@@ -32,7 +32,7 @@ pub struct Program {
 
 impl Program {
     /// Evaluates the planes of a body at the ends of a line and at the eye.
-    pub fn new(body: &Body, [p, q]: [DVec3; 2], eye: &EyePoint, small: f64) -> Self {
+    pub fn new(body: &ConvexBody, [p, q]: [DVec3; 2], eye: &EyePoint, small: f64) -> Self {
         let whole = |v: f64| if v.abs() <= small { 0.0 } else { v };
         let values = |plane: &Plane| Values {
             start: whole(plane.evaluate(p)),

@@ -1,6 +1,6 @@
 //! Steps of Roberts' algorithm.
 
-use super::Line;
+use super::VisibleLine;
 use crate::math::DVec3;
 use crate::trace::PseudocodeLine;
 
@@ -116,12 +116,12 @@ impl PseudocodeLine for Step {
 }
 
 /// Returns the lines that a list of steps leads to.
-pub fn replay(steps: &[Step]) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
+pub fn replay(steps: &[Step]) -> Vec<VisibleLine> {
+    let mut lines: Vec<VisibleLine> = Vec::new();
     for step in steps {
         match step {
             Step::Line { bodies, ends, .. } => {
-                lines.push(Line { bodies: *bodies, ends: *ends, visible: vec![[0.0, 1.0]] });
+                lines.push(VisibleLine { bodies: *bodies, ends: *ends, visible: vec![[0.0, 1.0]] });
             }
             Step::Hidden { line, part, .. } => {
                 if let Some(line) = lines.get_mut(*line) {

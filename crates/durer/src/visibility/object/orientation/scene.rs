@@ -124,7 +124,7 @@ impl<'a> Pieces<'a> {
         let mut torn = vec![false; count];
         for (_, sides) in edges.iter() {
             let [a, b] = sides else { continue };
-            let goes = |s: &super::super::Side| s.forward() != bodies.turned(s.item());
+            let goes = |s: &super::super::EdgeSide| s.forward() != bodies.turned(s.item());
             if let (true, Some(piece)) = (goes(a) == goes(b), bodies.of(a.item())) {
                 torn[piece as usize] = true;
             }

@@ -1,11 +1,11 @@
 //! The tree, and the walk through it.
 
-use super::{Options, Side, Step};
+use super::{Options, PlaneSide, Step};
 use crate::Result;
 use crate::math::{DVec3, Plane};
 use crate::sorting::CompactSort;
 use crate::trace::Tracer;
-use crate::view::cull::Face as Seen;
+use crate::view::cull::FaceSide as Seen;
 use crate::visibility::back_face::Eye;
 use crate::visibility::polygons::Face;
 use crate::visibility::polygons::pieces::Pieces;
@@ -65,7 +65,7 @@ impl Tree {
             let Some(root) = tree.root(faces, &list, options, t) else { continue };
             let node = tree.grow(faces, root, below, t);
             let halves = tree.divide(node, root, list, options, t)?;
-            for (list, side) in halves.into_iter().zip([Side::Front, Side::Back]) {
+            for (list, side) in halves.into_iter().zip([PlaneSide::Front, PlaneSide::Back]) {
                 lists.push((list, Some((node, side))));
             }
         }
@@ -85,7 +85,7 @@ impl Tree {
         }
         let mut splits = |&piece: &u32| {
             let plane = faces[self.face(piece) as usize].plane();
-            let split = |other: &&u32| self.pieces.side(plane, **other) == Side::Both;
+            let split = |other: &&u32| self.pieces.side(plane, **other) == PlaneSide::Both;
             let splits = list.iter().filter(split).count();
             t.step(|| Step::Tried { piece, splits });
             splits
@@ -100,7 +100,7 @@ impl Tree {
         &mut self,
         faces: &[Face],
         piece: u32,
-        below: Option<(u32, Side)>,
+        below: Option<(u32, PlaneSide)>,
         t: &mut impl Tracer<Step>,
     ) -> u32 {
         let node = self.nodes.len() as u32;
@@ -109,7 +109,7 @@ impl Tree {
         let (plane, point) = (*face.plane(), face.corners()[0]);
         self.nodes.push(Node { plane, point, on: vec![piece], halves: [None; 2] });
         if let Some((above, side)) = below {
-            self.nodes[above as usize].halves[usize::from(side == Side::Back)] = Some(node);
+            self.nodes[above as usize].halves[usize::from(side == PlaneSide::Back)] = Some(node);
         }
         node
     }
@@ -129,10 +129,10 @@ impl Tree {
             let side = self.pieces.side(&plane, piece);
             t.step(|| Step::Sorted { piece, side });
             match side {
-                Side::Front => halves[0].push(piece),
-                Side::Back => halves[1].push(piece),
-                Side::On => self.nodes[node as usize].on.push(piece),
-                Side::Both => {
+                PlaneSide::Front => halves[0].push(piece),
+                PlaneSide::Back => halves[1].push(piece),
+                PlaneSide::On => self.nodes[node as usize].on.push(piece),
+                PlaneSide::Both => {
                     let limit = ("number of pieces of a tree", options.max_pieces);
                     let into = self.pieces.split(&plane, piece, limit)?;
                     t.step(|| Step::Split { piece, into });
@@ -174,7 +174,7 @@ impl Tree {
                 continue;
             }
             let behind = eye.side(node.plane.normal, node.point) == Seen::Back;
-            let side = if behind { Side::Back } else { Side::Front };
+            let side = if behind { PlaneSide::Back } else { PlaneSide::Front };
             t.step(|| Step::Visit { node: number, eye: side });
             let [front, back] = node.halves;
             let (near, far) = if behind { (back, front) } else { (front, back) };

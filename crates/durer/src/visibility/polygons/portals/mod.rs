@@ -14,14 +14,14 @@
 
 mod plan;
 
-pub use plan::{Cell, Plan, Portal};
+pub use plan::{ConvexRoom, Plan, Portal};
 
 use super::{Face, Screen, pieces};
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::target::{NO_ITEM, Pixels};
 use crate::trace::{PseudocodeLine, Tracer};
-use crate::view::cull::{Face as Side, face_from_point, newell_area};
+use crate::view::cull::{FaceSide as Side, face_from_point, newell_area};
 use crate::{Error, Result};
 
 /// Facts about the algorithm.
@@ -64,7 +64,7 @@ impl Default for Options {
 
 /// The eye: it looks along z, x to the right and y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Eye {
+pub struct PlanEye {
     /// Position.
     pub at: DVec3,
     /// Cell in which it is.
@@ -76,7 +76,7 @@ pub struct Eye {
 /// Nearer to the eye than this in z, nothing is drawn; a power of two, so that it rounds nothing.
 const NEAR: f64 = 1.0 / 1024.0;
 
-impl Eye {
+impl PlanEye {
     /// Returns a polygon on the screen with −focal / z as depth, which is plane for plane polygons; `None` if all of it
     /// is behind the eye.
     fn project(&self, polygon: &[DVec3], screen: &Screen) -> Option<Vec<DVec3>> {
@@ -90,7 +90,12 @@ impl Eye {
     }
 
     /// Returns the window in which a portal is seen through another one; `None` if there is none.
-    fn window(&self, portal: &Portal, through: Window, screen: &Screen) -> [Option<Window>; 2] {
+    fn window(
+        &self,
+        portal: &Portal,
+        through: PortalWindow,
+        screen: &Screen,
+    ) -> [Option<PortalWindow>; 2] {
         let depth = |p: &DVec3| p.z - self.at.z;
         if portal.corners.iter().all(|p| depth(p) <= 0.0) {
             return [None; 2];
@@ -101,12 +106,12 @@ impl Eye {
         }
         let corners = self.project(&portal.corners, screen).unwrap_or_default();
         let around = Rect::around(corners.iter().map(|p| p.truncate()));
-        let whole = Window { low: [0; 2], high: [screen.width, screen.height] };
+        let whole = PortalWindow { low: [0; 2], high: [screen.width, screen.height] };
         let pixel = |v: f64, limit: u32| v.clamp(0.0, f64::from(limit)) as u32;
         let bounds = around.map(|around| {
             let (low, high) = (around.min().floor(), around.max().ceil());
             let [width, height] = whole.high;
-            Window {
+            PortalWindow {
                 low: [pixel(low.x, width), pixel(low.y, height)],
                 high: [pixel(high.x, width), pixel(high.y, height)],
             }
@@ -117,14 +122,14 @@ impl Eye {
 
 /// A rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Window {
+pub struct PortalWindow {
     /// First column and row.
     pub low: [u32; 2],
     /// Column and row after the last ones.
     pub high: [u32; 2],
 }
 
-impl Window {
+impl PortalWindow {
     /// Returns the pixels in both windows; `None` if there is none.
     fn intersected(self, other: Self) -> Option<Self> {
         let low = [0, 1].map(|k| self.low[k].max(other.low[k]));
@@ -139,7 +144,7 @@ pub struct Visit {
     /// The cell.
     pub cell: usize,
     /// Part of the picture in which it is seen.
-    pub window: Window,
+    pub window: PortalWindow,
     /// Portals on the way from the eye.
     pub portals: usize,
 }
@@ -163,9 +168,9 @@ pub enum Step {
         /// Number of the portal in it.
         portal: usize,
         /// The rectangle; none for a portal behind the eye.
-        bounds: Option<Window>,
+        bounds: Option<PortalWindow>,
         /// The intersection; none if the portal is not seen.
-        window: Option<Window>,
+        window: Option<PortalWindow>,
     },
 }
 
@@ -190,7 +195,7 @@ pub fn replay(steps: &[Step]) -> Vec<Visit> {
 /// A cell that is being visited.
 struct Open {
     cell: usize,
-    window: Window,
+    window: PortalWindow,
     /// Next portal to look through.
     next: usize,
 }
@@ -203,7 +208,7 @@ struct Open {
 /// [`Memory`](Error::Memory) where the screen's budget does not suffice.
 pub fn visits(
     plan: &Plan,
-    eye: &Eye,
+    eye: &PlanEye,
     screen: &Screen,
     options: &Options,
     t: &mut impl Tracer<Step>,
@@ -214,7 +219,7 @@ pub fn visits(
     }
     let mut charge = screen.work.charge("visits of cells", 0)?;
     let mut visits = Vec::new();
-    let mut enter = |way: &mut Vec<Open>, cell: usize, window: Window, t: &mut _| {
+    let mut enter = |way: &mut Vec<Open>, cell: usize, window: PortalWindow, t: &mut _| {
         if visits.len() >= options.max_visits {
             let (value, limit) = (visits.len() as u64 + 1, options.max_visits as u64);
             return Err(Error::Limit { what: "number of visits of cells", value, limit });
@@ -228,7 +233,7 @@ pub fn visits(
     };
     let mut way = Vec::new();
     if screen.width > 0 && screen.height > 0 {
-        let window = Window { low: [0; 2], high: [screen.width, screen.height] };
+        let window = PortalWindow { low: [0; 2], high: [screen.width, screen.height] };
         enter(&mut way, eye.cell, window, t)?;
     }
     while let Some(open) = way.last_mut() {
@@ -269,7 +274,7 @@ pub struct Wall {
 ///
 /// # Errors
 /// [`Error::Dangling`] for a cell that is not there; those of [`Face::new`].
-pub fn walls(plan: &Plan, cell: usize, eye: &Eye, screen: &Screen) -> Result<Vec<Wall>> {
+pub fn walls(plan: &Plan, cell: usize, eye: &PlanEye, screen: &Screen) -> Result<Vec<Wall>> {
     let count = plan.cells().len();
     let own = plan.cells().get(cell).ok_or(Error::Dangling { what: "cell", index: cell, count })?;
     let before: usize = plan.cells().iter().take(cell).map(|cell| cell.walls.len()).sum();
@@ -293,7 +298,7 @@ pub fn walls(plan: &Plan, cell: usize, eye: &Eye, screen: &Screen) -> Result<Vec
 /// use durer::math::{DVec2, DVec3};
 /// use durer::trace::NoTrace;
 /// use durer::visibility::polygons::Screen;
-/// use durer::visibility::polygons::portals::{Eye, Plan, items, visits};
+/// use durer::visibility::polygons::portals::{PlanEye, Plan, items, visits};
 ///
 /// // Two rooms with a door between them, and a third one behind a wall.
 /// let room = |y: f64| [(0.0, y), (4.0, y), (4.0, y + 4.0), (0.0, y + 4.0)].map(DVec2::from).to_vec();
@@ -312,14 +317,16 @@ pub fn walls(plan: &Plan, cell: usize, eye: &Eye, screen: &Screen) -> Result<Vec
 /// Those of [`visits`] and [`walls`]; [`Memory`](Error::Memory) where the screen's budget does not suffice.
 pub fn items(
     plan: &Plan,
-    eye: &Eye,
+    eye: &PlanEye,
     screen: &Screen,
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u32>> {
     let mut depths = screen.plane(f64::INFINITY)?;
     let mut items = screen.plane(NO_ITEM)?;
-    for Visit { cell, window: Window { low, high }, .. } in visits(plan, eye, screen, options, t)? {
+    for Visit { cell, window: PortalWindow { low, high }, .. } in
+        visits(plan, eye, screen, options, t)?
+    {
         let walls = walls(plan, cell, eye, screen)?;
         let _table = screen.edge_table(walls.iter().map(|wall| &wall.face))?;
         for Wall { item, face } in walls {

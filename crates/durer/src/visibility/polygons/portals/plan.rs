@@ -16,7 +16,7 @@ pub struct Portal {
 
 /// A convex room.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Cell {
+pub struct ConvexRoom {
     /// Plane polygons, whose corners run counter-clockwise seen from the inside.
     pub walls: Vec<Vec<DVec3>>,
     /// Its openings.
@@ -29,7 +29,7 @@ pub struct Cell {
 /// All corners are finite; every portal leads to a cell of the plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Plan {
-    cells: Vec<Cell>,
+    cells: Vec<ConvexRoom>,
 }
 
 /// Largest distance of a door from the wall that it is in, in units of the plan's extent.
@@ -40,7 +40,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::NonFinite`] for a corner; [`Error::Dangling`] for a portal to a cell that is not there.
-    pub fn new(cells: Vec<Cell>) -> Result<Self> {
+    pub fn new(cells: Vec<ConvexRoom>) -> Result<Self> {
         let count = cells.len();
         let portals = || cells.iter().flat_map(|cell| &cell.portals);
         if let Some(portal) = portals().find(|portal| portal.to >= count) {
@@ -55,7 +55,7 @@ impl Plan {
     }
 
     /// Returns the cells.
-    pub fn cells(&self) -> &[Cell] {
+    pub fn cells(&self) -> &[ConvexRoom] {
         &self.cells
     }
 
@@ -73,7 +73,7 @@ impl Plan {
             let at = |p: DVec2, y: f64| DVec3::new(p.x, y * height / 2.0, p.y);
             vec![at(a, -1.0), at(b, -1.0), at(b, 1.0), at(a, 1.0)]
         };
-        let mut cells = vec![Cell::default(); rooms.len()];
+        let mut cells = vec![ConvexRoom::default(); rooms.len()];
         let mut sides = vec![Vec::new(); doors.len()];
         for (cell, room) in rooms.iter().enumerate() {
             // Counter-clockwise in x and z, so that walls are so, seen from the inside.

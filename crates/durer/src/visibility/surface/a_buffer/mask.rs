@@ -5,7 +5,7 @@
 //! the sub-pixels on the positive side: their number follows from the exact area, and they are the ones with the
 //! largest values of the function.
 
-use super::Mask;
+use super::SubpixelMask;
 use crate::sorting::CompactSort;
 use fearless_simd::{Simd, f32x8, prelude::*};
 
@@ -113,7 +113,7 @@ impl Common {
 }
 
 impl MaskTable {
-    pub fn new(mask: Mask) -> Self {
+    pub fn new(mask: SubpixelMask) -> Self {
         let side = mask.side();
         let mut masks = Box::new([0; ENTRIES]);
         for (index, masks) in masks.chunks_exact_mut(DISTANCES).enumerate() {
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_function_and_its_opposite_share_all_sub_pixels() {
-        for mask in [Mask::M16, Mask::M64] {
+        for mask in [SubpixelMask::M16, SubpixelMask::M64] {
             let table = MaskTable::new(mask);
             for (a, b, e) in functions().filter(|(a, b, _)| a.abs() + b.abs() > 0.0) {
                 let one = table.half_plane(&Direction::new(a, b), e);
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn the_outermost_masks_are_empty_and_full() {
-        for mask in [Mask::M16, Mask::M64] {
+        for mask in [SubpixelMask::M16, SubpixelMask::M64] {
             let table = MaskTable::new(mask);
             for first in (0..ENTRIES).step_by(DISTANCES) {
                 let outermost = [first, first + DISTANCES - 1].map(|i| table.masks.get(i));
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn masks_count_as_many_sub_pixels_as_the_area_says() {
-        for mask in [Mask::M16, Mask::M64] {
+        for mask in [SubpixelMask::M16, SubpixelMask::M64] {
             let table = MaskTable::new(mask);
             let bits = table.full().count_ones();
             for (a, b, e) in functions().filter(|(a, b, _)| a.abs() + b.abs() > 0.0) {

@@ -66,7 +66,7 @@ pub const INFO: Info = Info {
 
 /// Sub-pixels of a coverage mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Mask {
+pub enum SubpixelMask {
     /// 4 × 4.
     #[default]
     M16,
@@ -74,7 +74,7 @@ pub enum Mask {
     M64,
 }
 
-impl Mask {
+impl SubpixelMask {
     /// Returns the number of sub-pixels along the side of a pixel.
     fn side(self) -> u32 {
         match self {
@@ -91,7 +91,7 @@ pub(super) const PER_TRIANGLE: u64 = Faces::PER_TRIANGLE + ActiveList::PER_TRIAN
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Resolution of the masks.
-    pub mask: Mask,
+    pub mask: SubpixelMask,
     /// Fragments kept at a time. Bounds memory to 44 bytes times this; a row with more is made in
     /// parts, so a low limit costs time and changes no pixel.
     pub max_fragments: usize,
@@ -107,7 +107,7 @@ impl Default for Options {
     /// Returns the default: 4 × 4 masks, a million fragments, by material, on white.
     fn default() -> Self {
         let picture::Options { shading, background, level } = picture::Options::default();
-        Self { mask: Mask::M16, max_fragments: 1 << 20, shading, background, level }
+        Self { mask: SubpixelMask::M16, max_fragments: 1 << 20, shading, background, level }
     }
 }
 
@@ -157,7 +157,7 @@ pub enum Step {
 /// Renders into the planes that the framebuffer has.
 ///
 /// The input must have let through all triangles that touch a pixel anywhere: a
-/// [`crate::visibility::surface::setup::Filter::sample_reach`] of 128.
+/// [`crate::visibility::surface::TriangleFilter::sample_reach`] of 128.
 pub fn render(
     input: &SurfaceInput<'_>,
     lights: &PreparedLights,

@@ -16,7 +16,7 @@ mod piece;
 mod relation;
 mod tiles;
 
-pub use piece::{Cut, Part};
+pub use piece::{CutLine, TrianglePiece};
 
 use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::DVec2;
@@ -78,7 +78,7 @@ pub struct Options {
 
 /// The tests that let a polygon P be painted before another one Q, in order of cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Test {
+pub enum PaintTest {
     /// 1: P's nearest point is behind Q's farthest.
     Depths,
     /// 2a: their boxes on the screen have no pixel in common.
@@ -93,7 +93,7 @@ pub enum Test {
     Pixels,
 }
 
-impl Test {
+impl PaintTest {
     /// Returns the test's number in textbooks; the last test is not in the paper.
     pub const fn number(self) -> &'static str {
         match self {
@@ -123,7 +123,7 @@ pub enum Step {
         /// Q.
         other: u32,
         /// The test that lets P be painted before Q, if there is one.
-        passed: Option<Test>,
+        passed: Option<PaintTest>,
     },
     /// Q must be painted before P: it is marked and takes P's place.
     Move {
@@ -135,7 +135,7 @@ pub enum Step {
         /// Number of the polygon.
         polygon: u32,
         /// Cut that divides it.
-        cut: Cut,
+        cut: CutLine,
         /// The two pieces: the one on the cut's inner side first.
         pieces: [u32; 2],
     },
@@ -166,7 +166,7 @@ pub struct ScreenPolygon {
     /// Its item.
     pub item: u32,
     /// Part of the triangle that it is, if the triangle was split.
-    pub part: Option<Part>,
+    pub part: Option<TrianglePiece>,
 }
 
 impl ScreenPolygon {
@@ -441,19 +441,19 @@ impl Sorter<'_> {
     /// Splits one of the polygons involved if P and Q penetrate each other or Q already waits for P; returns `false` if
     /// none can be split.
     fn resolve(&mut self, p: u32, q: u32, verdict: Verdict, t: &mut impl Tracer<Step>) -> bool {
-        if self.split(p, &Cut::along(q), t) {
+        if self.split(p, &CutLine::along(q), t) {
             return true;
         }
         if verdict == Verdict::Penetrates || !self.marked[q as usize] {
-            return self.split(q, &Cut::along(p), t);
+            return self.split(q, &CutLine::along(p), t);
         }
         let first = self.stack.iter().position(|&s| s == q).unwrap_or(0);
         let cycle = self.stack[first..].to_vec();
-        self.split(q, &Cut::along(p), t) || cycle.into_iter().any(|r| self.split(r, &[], t))
+        self.split(q, &CutLine::along(p), t) || cycle.into_iter().any(|r| self.split(r, &[], t))
     }
 
     /// Splits a polygon by the first cut that leaves pixels on both sides, or else in the middle.
-    fn split(&mut self, p: u32, cuts: &[Cut], t: &mut impl Tracer<Step>) -> bool {
+    fn split(&mut self, p: u32, cuts: &[CutLine], t: &mut impl Tracer<Step>) -> bool {
         let Some((cut, pieces)) = self.pieces.split(p, cuts) else { return false };
         t.step(|| Step::Split { polygon: p, cut, pieces });
         self.done[p as usize] = true;
@@ -480,7 +480,7 @@ mod tests {
     use crate::trace::NoTrace;
     use crate::view::View;
     use crate::visibility::surface::Cull;
-    use crate::visibility::surface::setup::Filter;
+    use crate::visibility::surface::setup::TriangleFilter;
 
     /// Returns triangles around the origin, rotated against each other: each intersects all others.
     fn penetrating(count: u32) -> Scene {
@@ -506,7 +506,7 @@ mod tests {
             far: 10.0,
         };
         let view = View::new(camera, 48, 48).unwrap();
-        let input = SurfaceInput::new(&scene, &view, Filter::new(Cull::None, 128)).unwrap();
+        let input = SurfaceInput::new(&scene, &view, TriangleFilter::new(Cull::None, 128)).unwrap();
         let polygons = order(&input, &mut NoTrace).unwrap();
         assert!(polygons.len() > 200, "{}", polygons.len());
         let error = order_within(&input, &[], 500, &mut NoTrace).unwrap_err();

@@ -11,7 +11,7 @@ use crate::visibility::surface::window::SampleRect;
 
 /// A line that cuts a polygon in two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Cut {
+pub enum CutLine {
     /// Intersection of the polygon with the plane of another; its inner side is nearer.
     Plane {
         /// The other polygon.
@@ -30,7 +30,7 @@ pub enum Cut {
     Row(i32),
 }
 
-impl Cut {
+impl CutLine {
     /// Returns the cuts that may separate a polygon from another.
     pub(super) fn along(of: u32) -> [Self; 4] {
         let edge = |edge| Self::Edge { of, edge };
@@ -40,7 +40,7 @@ impl Cut {
 
 /// A piece of a triangle.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct TrianglePiece {
     /// The corners, in pixels; convex.
     pub outline: Vec<DVec2>,
     /// The pixels that fell to it, row by row.
@@ -62,7 +62,7 @@ pub struct Piece {
     pub window: SampleRect,
     pub nearest: f32,
     pub farthest: f32,
-    pub part: Option<Part>,
+    pub part: Option<TrianglePiece>,
 }
 
 /// Bytes of a piece, and of its places in the queue, in the lists of a few tiles and in the result.
@@ -164,10 +164,10 @@ impl<'a> Pieces<'a> {
 
     /// Splits a polygon by the first cut that leaves pixels on both sides, or in the middle; `None` if it has only one
     /// pixel.
-    pub fn split(&mut self, polygon: u32, cuts: &[Cut]) -> Option<(Cut, [u32; 2])> {
+    pub fn split(&mut self, polygon: u32, cuts: &[CutLine]) -> Option<(CutLine, [u32; 2])> {
         let spans = self.spans(polygon, self.window(polygon));
         let w = box_of(&spans)?;
-        let middle = [Cut::Column((w.x0 + w.x1) / 2), Cut::Row((w.y0 + w.y1) / 2)];
+        let middle = [CutLine::Column((w.x0 + w.x1) / 2), CutLine::Row((w.y0 + w.y1) / 2)];
         let wide = w.x1 - w.x0 >= w.y1 - w.y0;
         let last = if wide { middle } else { [middle[1], middle[0]] };
         cuts.iter().chain(&last).find_map(|&cut| {
@@ -193,13 +193,13 @@ impl<'a> Pieces<'a> {
         let triangle = self.get(of).triangle;
         let lists = size_of_val(&spans[..]) + size_of_val(&outline[..]);
         self.bytes += PER_PIECE + lists as u64;
-        let part = Some(Part { outline, spans });
+        let part = Some(TrianglePiece { outline, spans });
         self.list.push(Piece { triangle, window, nearest, farthest, part });
         self.len() - 1
     }
 
     /// Returns the pixels on the inner and the outer side of a cut.
-    fn share_out(&self, polygon: u32, spans: &[Span], cut: Cut) -> [Vec<Span>; 2] {
+    fn share_out(&self, polygon: u32, spans: &[Span], cut: CutLine) -> [Vec<Span>; 2] {
         let mut sides = [Vec::new(), Vec::new()];
         for s in spans {
             let mut x0 = s.x0;
@@ -216,18 +216,18 @@ impl<'a> Pieces<'a> {
         sides
     }
 
-    fn is_inner(&self, polygon: u32, cut: Cut, x: i32, y: i32) -> bool {
+    fn is_inner(&self, polygon: u32, cut: CutLine, x: i32, y: i32) -> bool {
         match cut {
-            Cut::Plane { of } => nearer(self.at(polygon, x, y), self.at(of, x, y)),
-            Cut::Edge { of, edge } => {
+            CutLine::Plane { of } => nearer(self.at(polygon, x, y), self.at(of, x, y)),
+            CutLine::Edge { of, edge } => {
                 self.covers[self.get(of).triangle as usize].edge_at(edge, x, y) >= 0
             }
-            Cut::Column(column) => x < column,
-            Cut::Row(row) => y < row,
+            CutLine::Column(column) => x < column,
+            CutLine::Row(row) => y < row,
         }
     }
 
-    fn cut_outline(&self, polygon: u32, cut: Cut) -> [Vec<DVec2>; 2] {
+    fn cut_outline(&self, polygon: u32, cut: CutLine) -> [Vec<DVec2>; 2] {
         let outline = match &self.get(polygon).part {
             Some(part) => part.outline.clone(),
             None => corners(self.triangle(polygon)).to_vec(),
@@ -237,18 +237,18 @@ impl<'a> Pieces<'a> {
     }
 
     /// Returns a linear function of the screen, positive on the inner side of a cut.
-    fn inward(&self, polygon: u32, cut: Cut, p: DVec2) -> f64 {
+    fn inward(&self, polygon: u32, cut: CutLine, p: DVec2) -> f64 {
         match cut {
-            Cut::Plane { of } => {
+            CutLine::Plane { of } => {
                 on_plane(self.triangle(of), p) - on_plane(self.triangle(polygon), p)
             }
-            Cut::Edge { of, edge } => {
+            CutLine::Edge { of, edge } => {
                 let v = corners(self.triangle(of));
                 let (a, b) = (v[edge % 3], v[(edge + 1) % 3]);
                 (b - a).perp_dot(p - a)
             }
-            Cut::Column(column) => f64::from(column) - p.x,
-            Cut::Row(row) => f64::from(row) - p.y,
+            CutLine::Column(column) => f64::from(column) - p.x,
+            CutLine::Row(row) => f64::from(row) - p.y,
         }
     }
 }

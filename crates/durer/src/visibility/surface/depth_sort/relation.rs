@@ -1,7 +1,7 @@
 //! The tests between two polygons, in order of cost.
 
 use super::piece::{Pieces, on_plane};
-use super::{Test, corners};
+use super::{PaintTest, corners};
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::nearer;
 
@@ -9,7 +9,7 @@ use crate::visibility::surface::visible::nearer;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// It may be, by this test.
-    Passed(Test),
+    Passed(PaintTest),
     /// Q must be painted first.
     Later,
     /// Each hides a part of the other.
@@ -21,23 +21,23 @@ impl Pieces<'_> {
     /// must be a pixel at which P hides Q.
     pub fn judge(&self, p: u32, q: u32, marked: bool) -> Verdict {
         if self.is_behind(p, q) {
-            return Verdict::Passed(Test::Depths);
+            return Verdict::Passed(PaintTest::Depths);
         }
         let common = self.window(p).and(self.window(q));
         if common.is_empty() {
-            return Verdict::Passed(Test::Boxes);
+            return Verdict::Passed(PaintTest::Boxes);
         }
         let (tp, tq) = (self.triangle(p), self.triangle(q));
         let slack =
             self.slack[self.get(p).triangle as usize] + self.slack[self.get(q).triangle as usize];
         if lies_behind(tq, tp, tq, slack) {
-            return Verdict::Passed(Test::InFrontOfPlane);
+            return Verdict::Passed(PaintTest::InFrontOfPlane);
         }
         if lies_behind(tp, tp, tq, slack) {
-            return Verdict::Passed(Test::BehindPlane);
+            return Verdict::Passed(PaintTest::BehindPlane);
         }
         if separated(tp, tq) || separated(tq, tp) {
-            return Verdict::Passed(Test::Projections);
+            return Verdict::Passed(PaintTest::Projections);
         }
         let whole = self.get(p).part.is_none() && self.get(q).part.is_none();
         if whole && !marked && (lies_behind(tq, tq, tp, slack) || lies_behind(tp, tq, tp, slack)) {
@@ -72,7 +72,7 @@ impl Pieces<'_> {
             }
             if (a.y, a.x1) < (b.y, b.x1) { i += 1 } else { j += 1 }
         }
-        if p_nearer { Verdict::Later } else { Verdict::Passed(Test::Pixels) }
+        if p_nearer { Verdict::Later } else { Verdict::Passed(PaintTest::Pixels) }
     }
 }
 

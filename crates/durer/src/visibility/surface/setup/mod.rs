@@ -41,7 +41,7 @@ use vertex::{Behind, Transform};
 
 /// Numbers of triangles by outcome.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct TriangleCounts {
     /// Triangles with a vertex that is not finite.
     pub non_finite: u64,
     /// Cut by the near plane or the guard band.
@@ -52,7 +52,7 @@ pub struct Counts {
     pub drawn: u64,
 }
 
-impl Counts {
+impl TriangleCounts {
     /// Adds the triangles, of up to eight, that are present and need no clipping.
     #[inline(always)]
     fn add(&mut self, eight: &Eight, there: u64) {
@@ -63,7 +63,7 @@ impl Counts {
     }
 }
 
-impl std::ops::AddAssign for Counts {
+impl std::ops::AddAssign for TriangleCounts {
     fn add_assign(&mut self, other: Self) {
         self.non_finite += other.non_finite;
         self.clipped += other.clipped;
@@ -74,7 +74,7 @@ impl std::ops::AddAssign for Counts {
 
 /// Filter for the triangles of a scene, and the size of lines and points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Filter {
+pub struct TriangleFilter {
     /// Treatment of faces seen from behind.
     pub cull: Cull,
     /// Largest distance of samples from the pixel's centre, in 1/256 pixel: triangles that cannot
@@ -84,7 +84,7 @@ pub struct Filter {
     pub marks: Marks,
 }
 
-impl Filter {
+impl TriangleFilter {
     /// Creates a filter with lines and points of the usual size.
     pub const fn new(cull: Cull, sample_reach: i32) -> Self {
         Self { cull, sample_reach, marks: Marks::USUAL }
@@ -128,17 +128,17 @@ const UNINDEXED: u32 = 512;
 pub(crate) struct Assembler<'a> {
     scene: &'a Scene,
     view: &'a View,
-    filter: Filter,
+    filter: TriangleFilter,
     level: Level,
     vertices: Vec<ScreenVertex>,
     /// Counts so far.
-    pub counts: Counts,
+    pub counts: TriangleCounts,
 }
 
 impl<'a> Assembler<'a> {
     /// Creates an assembler for the scene, which has passed [`Scene::check`].
-    pub fn new(scene: &'a Scene, view: &'a View, filter: Filter, level: Level) -> Self {
-        Self { scene, view, filter, level, vertices: Vec::new(), counts: Counts::default() }
+    pub fn new(scene: &'a Scene, view: &'a View, filter: TriangleFilter, level: Level) -> Self {
+        Self { scene, view, filter, level, vertices: Vec::new(), counts: TriangleCounts::default() }
     }
 
     /// Returns the assembler with memory for vertices that was used before, and that [`Self::into_memory`] returns.

@@ -1,12 +1,12 @@
 //! The rules by which triangles are left out.
 
-use super::Filter;
+use super::TriangleFilter;
 use super::vertex::Behind;
 
 /// Limits that triangles are tested against.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    pub filter: Filter,
+    pub filter: TriangleFilter,
     /// The pixels of the view's window, along x and y: the first, and the one after the last.
     pub window: [[i32; 2]; 2],
     /// The sign of the area of triangles seen from behind.

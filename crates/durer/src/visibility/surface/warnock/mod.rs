@@ -30,7 +30,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
 };
-use crate::visibility::surface::window::{Relation, SampleRect};
+use crate::visibility::surface::window::{SampleRect, WindowRelation};
 use crate::work::{Charge, Work};
 use depth::{farthest, hides};
 use glass::Glass;
@@ -331,11 +331,11 @@ impl<'a> Solver<'a> {
     fn concern(&self, entries: &[Entry], window: &SampleRect, list: &mut Vec<Entry>) {
         for &Entry { triangle, surrounds } in entries {
             let relation = match surrounds {
-                true => Relation::Surrounding,
+                true => WindowRelation::Surrounding,
                 false => self.covers[triangle as usize].relation(window),
             };
-            if relation != Relation::Outside {
-                let surrounds = relation == Relation::Surrounding;
+            if relation != WindowRelation::Outside {
+                let surrounds = relation == WindowRelation::Surrounding;
                 list.push(Entry { triangle, surrounds });
             }
         }

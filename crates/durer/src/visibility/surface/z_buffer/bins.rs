@@ -12,7 +12,8 @@ use crate::view::View;
 use crate::visibility::surface::lit::{KnownNormals, Lighting};
 use crate::visibility::surface::points::triangles::RunNormals;
 use crate::visibility::surface::setup::{
-    Assembler, Counts, Coverage, Filter, Run, Sampled, ScreenTriangle, ScreenVertex, Sink,
+    Assembler, Coverage, Run, Sampled, ScreenTriangle, ScreenVertex, Sink, TriangleCounts,
+    TriangleFilter,
 };
 use crate::work::{Charge, Work};
 use fearless_simd::Simd;
@@ -31,7 +32,7 @@ pub struct Source<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     pub runs: &'a [Run],
-    pub filter: Filter,
+    pub filter: TriangleFilter,
     /// Samples at which small opaque triangles are sampled during set-up, one or four; none to keep all triangles.
     pub early: &'static [[i32; 2]],
     /// Lighting that needs normals of small triangles.
@@ -77,7 +78,7 @@ pub struct Bins {
     /// Treatment of the fragments of the job's triangles.
     coverage: Coverage,
     /// Counts of the job's triangles.
-    counts: Counts,
+    counts: TriangleCounts,
     triangles: Vec<ScreenTriangle>,
     /// Triangles that touch each tile, in item order.
     touching: ByTile,
@@ -146,8 +147,8 @@ impl Binned {
     }
 
     /// Returns the counts of all triangles.
-    pub fn counts(&self) -> Counts {
-        let mut counts = Counts::default();
+    pub fn counts(&self) -> TriangleCounts {
+        let mut counts = TriangleCounts::default();
         self.bins.iter().for_each(|bins| counts += bins.counts);
         counts
     }

@@ -102,7 +102,7 @@ mod tests {
     use crate::simd::dispatch;
     use crate::testing::{camera, scene_of};
     use crate::view::View;
-    use crate::visibility::surface::setup::{Filter, runs};
+    use crate::visibility::surface::setup::{TriangleFilter, runs};
     use crate::visibility::surface::{Cull, Samples};
     use crate::work::Work;
 
@@ -137,7 +137,7 @@ mod tests {
         let runs = runs(&scene).expect("runs");
         for samples in [Samples::One, Samples::Four] {
             let level = Level::new();
-            let filter = Filter::new(Cull::None, 128);
+            let filter = TriangleFilter::new(Cull::None, 128);
             let (scene, view, runs) = (&scene, &view, runs.as_slice());
             let source = Source { scene, view, runs, filter, early: &[], lighting: None, level };
             let binned = Binned::new(&source, &Work::default()).expect("no limit");

@@ -38,7 +38,9 @@ use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{KnownNormals, Lighting, Lit, PointQueue};
-use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
+use crate::visibility::surface::setup::{
+    Coverage, ScreenTriangle, TriangleCounts, TriangleFilter, runs,
+};
 use crate::visibility::surface::{Background, Cull, Marks, Samples};
 use crate::work::Work;
 use area::{Area, Codes};
@@ -102,9 +104,9 @@ impl Default for Options {
 
 /// Seconds spent in the two halves of the work, and the fate of the triangles.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Report {
+pub struct StageReport {
     /// Counts of the triangles by their treatment.
-    pub counts: Counts,
+    pub counts: TriangleCounts,
     /// Vertices, clipping, set-up, binning.
     pub geometry_seconds: f64,
     /// Rasterization, shading, resolve.
@@ -122,12 +124,12 @@ pub fn render(
     lights: &PreparedLights,
     options: &Options,
     framebuffer: &mut Framebuffer,
-) -> crate::Result<Report> {
+) -> crate::Result<StageReport> {
     let start = Stopwatch::start();
     let runs = runs(scene)?;
     let bands = bands(framebuffer, view);
     let reach = options.samples.reach();
-    let filter = Filter { cull: options.cull, sample_reach: reach, marks: options.marks };
+    let filter = TriangleFilter { cull: options.cull, sample_reach: reach, marks: options.marks };
     let bytes = PreparedMaterials::bytes(scene);
     let _materials = options.work.charge(PreparedMaterials::STAGE, bytes)?;
     let materials = PreparedMaterials::new(scene).with_ink(options.background.ink());
@@ -147,7 +149,7 @@ pub fn render(
     let source =
         Source { scene, view, runs: &runs, filter, early, lighting: Some(lighting), level };
     let binned = &Binned::new(&source, work)?;
-    let mut report = Report { counts: binned.counts(), ..Report::default() };
+    let mut report = StageReport { counts: binned.counts(), ..StageReport::default() };
     report.geometry_seconds = start.seconds() - prepared;
 
     let triangle_count = scene.triangle_count() as u32;

@@ -14,7 +14,7 @@ use crate::simd::{Level, dispatch};
 use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::Samples;
-use crate::visibility::surface::setup::{Counts, Coverage, Filter, Run, runs};
+use crate::visibility::surface::setup::{Coverage, Run, TriangleCounts, TriangleFilter, runs};
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
@@ -29,7 +29,7 @@ pub struct Options {
     /// True to include pixels' centres, for the planes of depth, item and normal.
     pub centers: bool,
     /// Triangles to leave out, and the size of points and lines.
-    pub filter: Filter,
+    pub filter: TriangleFilter,
     /// SIMD level.
     pub level: Level,
     /// Budget of the work, and its cancellation.
@@ -43,18 +43,18 @@ pub struct Survey {
     tiles: Vec<Vec<SamplePlane>>,
     /// Items of the pieces so far.
     count: u32,
-    counts: Counts,
+    counts: TriangleCounts,
     /// Charge of the samples to the budget.
     charge: Charge,
 }
 
 /// Result of a survey.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct SurveyResult {
     /// The items that are seen at some sample, ascending; they count through all pieces.
     pub items: Vec<u32>,
     /// Counts of the triangles by their treatment.
-    pub counts: Counts,
+    pub counts: TriangleCounts,
     /// Charge of the list to the budget.
     _charge: Charge,
 }
@@ -81,7 +81,7 @@ impl Survey {
             planes
         };
         let tiles = (0..tiles).map(|_| planes()).collect();
-        let counts = Counts::default();
+        let counts = TriangleCounts::default();
         Ok(Self { view: *view, options, tiles, count: 0, counts, charge })
     }
 
@@ -126,7 +126,7 @@ impl Survey {
     ///
     /// # Errors
     /// [`Error::Memory`] if the budget has no room for the list.
-    pub fn finish(self) -> Result<Seen> {
+    pub fn finish(self) -> Result<SurveyResult> {
         let Self { tiles, options: Options { work, .. }, counts, charge: _charge, .. } = self;
         let mut charge = work.charge("triangles that are seen", 0)?;
         let mut items = Vec::new();
@@ -143,7 +143,7 @@ impl Survey {
         }
         items.sort_unstable();
         items.dedup();
-        Ok(Seen { items, counts, _charge: charge })
+        Ok(SurveyResult { items, counts, _charge: charge })
     }
 }
 

@@ -11,7 +11,7 @@ use crate::simd::{dispatch, levels};
 use crate::testing::{camera, scene_of};
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
-use crate::visibility::surface::setup::{Coverage, Filter, runs};
+use crate::visibility::surface::setup::{Coverage, TriangleFilter, runs};
 use crate::visibility::surface::{Cull, Samples};
 use crate::work::Work;
 use std::collections::BTreeMap;
@@ -118,7 +118,7 @@ fn blended_surfaces_are_composed_sample_by_sample_from_far_to_near() {
         .into_iter()
         .flat_map(|s| levels().into_iter().map(move |l| (s, l)))
     {
-        let filter = Filter::new(Cull::None, 128);
+        let filter = TriangleFilter::new(Cull::None, 128);
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
         let (scene, view, runs) = drawn;

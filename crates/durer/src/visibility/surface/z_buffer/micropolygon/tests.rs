@@ -11,7 +11,7 @@ use crate::testing::{Numbers, camera, scene_of};
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::points::triangles::{OF_ROWS, Triangles};
-use crate::visibility::surface::setup::{Coverage, Filter, runs};
+use crate::visibility::surface::setup::{Coverage, TriangleFilter, runs};
 use crate::visibility::surface::z_buffer::bins::{Binned, Source};
 use crate::visibility::surface::z_buffer::rasterize::AllPass;
 use crate::visibility::surface::z_buffer::tile::SamplePlane;
@@ -111,7 +111,7 @@ fn fragments_are_what_rasterizing_and_normal_planes_give() {
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), reach, level);
         let (scene, view, runs) = drawn;
-        let filter = Filter::new(Cull::None, reach);
+        let filter = TriangleFilter::new(Cull::None, reach);
         let binned = |early: &'static [[i32; 2]]| {
             let lighting = Some(&lighting);
             let source = Source { scene, view, runs, filter, early, lighting, level };
