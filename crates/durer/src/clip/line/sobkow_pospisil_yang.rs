@@ -74,8 +74,8 @@ pub struct EndWay {
 /// use durer::clip::outcode::Outcode;
 ///
 /// // From the left over the top: the cut at the left border must not be above the window.
-/// let start = Way { borders: Outcode::LEFT, misses: Outcode::TOP };
-/// let end = Way { borders: Outcode::TOP, misses: Outcode::INSIDE };
+/// let start = EndWay { borders: Outcode::LEFT, misses: Outcode::TOP };
+/// let end = EndWay { borders: Outcode::TOP, misses: Outcode::INSIDE };
 /// assert_eq!(CASES[0b0001_1000], Case::Cut { start, end });
 /// ```
 pub const CASES: [Case; 256] = cases();

@@ -62,7 +62,7 @@ impl DetailLevel {
     ///
     /// // Points that are 1/65536 of the world apart.
     /// let point = |i: u32| TileBody::Points(vec![DVec2::new(f64::from(i) / 65536.0, 0.25)]);
-    /// let features: Vec<Feature> =
+    /// let features: Vec<TileFeature> =
     ///     (0..100).map(|i| TileFeature { layer: 0, body: point(i), fill: WindingRule::EvenOdd }).collect();
     /// let detail = DetailLevel::of(&features, 4096).unwrap();
     /// assert_eq!((detail.zoom, detail.reason), (5, Reason::Distances));

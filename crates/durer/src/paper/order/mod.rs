@@ -68,9 +68,9 @@ impl PenStroke {
 /// ```
 /// use durer::math::DVec2;
 /// use durer::paper::order::{PenStroke, OrderedStroke, turns};
-/// let along = |a: f64, b: f64| Stroke { points: vec![DVec2::new(a, 0.0), DVec2::new(b, 0.0)], closed: false };
+/// let along = |a: f64, b: f64| PenStroke { points: vec![DVec2::new(a, 0.0), DVec2::new(b, 0.0)], closed: false };
 /// let order = turns(&[along(20.0, 11.0), along(0.0, 10.0)], DVec2::ZERO);
-/// assert_eq!(order, [Turn { index: 1, first: 0 }, Turn { index: 0, first: 1 }]);
+/// assert_eq!(order, [OrderedStroke { index: 1, first: 0 }, OrderedStroke { index: 0, first: 1 }]);
 /// ```
 pub fn turns(strokes: &[PenStroke], start: DVec2) -> Vec<OrderedStroke> {
     let found = greedy::turns(strokes, start);

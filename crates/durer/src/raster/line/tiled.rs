@@ -78,7 +78,7 @@ pub struct Step<T> {
 /// use durer::trace::NoTrace;
 ///
 /// let mut picture = Pixels::new(5, 3, '.');
-/// let line = |from: (i32, i32), to: (i32, i32), value| Line { from: from.into(), to: to.into(), value };
+/// let line = |from: (i32, i32), to: (i32, i32), value| PixelLine { from: from.into(), to: to.into(), value };
 /// let lines = [line((0, 0), (4, 2), 'a'), line((2, -5), (2, 9), 'b')];
 /// draw(&lines, &mut picture, &mut NoTrace);
 /// assert_eq!(String::from_iter(picture.data()), "aab....ba...b.a".to_owned());

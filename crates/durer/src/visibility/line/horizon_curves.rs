@@ -150,7 +150,7 @@ pub fn replay(steps: &[Step]) -> Vec<VisiblePiece> {
 /// use durer::trace::NoTrace;
 /// use durer::visibility::line::horizon_curves::{ColumnCurve, Options, draw};
 ///
-/// let curve = |heights: [f64; 3]| Curve { first: 0, heights: heights.to_vec() };
+/// let curve = |heights: [f64; 3]| ColumnCurve { first: 0, heights: heights.to_vec() };
 /// // A hill before a lower ridge, which comes out on both sides of it and below its top.
 /// let curves = [curve([0.0, 2.0, 0.0]), curve([1.0, 1.0, 1.0])];
 /// let pieces = draw(&curves, &Options::columns(3), &mut NoTrace)?;

@@ -304,7 +304,7 @@ pub fn walls(plan: &Plan, cell: usize, eye: &PlanEye, screen: &Screen) -> Result
 /// let room = |y: f64| [(0.0, y), (4.0, y), (4.0, y + 4.0), (0.0, y + 4.0)].map(DVec2::from).to_vec();
 /// let door = [DVec2::new(1.0, 4.0), DVec2::new(2.0, 4.0)];
 /// let plan = Plan::of_rooms(&[room(0.0), room(4.0), room(8.0)], &[door], 2.0)?;
-/// let eye = Eye { at: DVec3::new(1.5, 0.0, 1.0), cell: 0, focal: 8.0 };
+/// let eye = PlanEye { at: DVec3::new(1.5, 0.0, 1.0), cell: 0, focal: 8.0 };
 /// let screen = Screen { width: 16, height: 8, ..Screen::default() };
 /// let seen = visits(&plan, &eye, &screen, &Default::default(), &mut NoTrace)?;
 /// assert_eq!(seen.iter().map(|visit| visit.cell).collect::<Vec<_>>(), [0, 1]);
