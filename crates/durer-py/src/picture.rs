@@ -120,9 +120,9 @@ fn warped<'py>(
         owned.push((color, depth.map_err(|e| error::of_library(py, &e))?, camera(*from)));
     }
     let warped = on_threads(py, threads, || {
-        let sources: Vec<warp::Source> = owned
+        let sources: Vec<warp::DepthPicture> = owned
             .iter()
-            .map(|(color, depth, camera)| warp::Source { color, depth, camera: *camera })
+            .map(|(color, depth, camera)| warp::DepthPicture { color, depth, camera: *camera })
             .collect();
         let options = warp::Options { hole, work: Work::default() };
         sources.iter().try_for_each(|s| s.camera.check())?;

@@ -238,8 +238,7 @@ pub fn floods() {
         let fill = |image: &mut Pixels<u8>, connectivity| {
             image.data_mut().copy_from_slice(source.data());
             let options = seed_fill::Options { connectivity, ..Default::default() };
-            let filled =
-                flood_fill(image, (0, 0), 128, 0, SeedFill::Spans, &options, &mut NoTrace);
+            let filled = flood_fill(image, (0, 0), 128, 0, SeedFill::Spans, &options, &mut NoTrace);
             filled.expect("no budget");
         };
         // The preparation of each, to be subtracted.

@@ -6,8 +6,8 @@ use crate::{Result, llvmpipe, scene, table};
 use durer::math::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use durer::pipeline::{Lighting, RenderOptions, Samples, render_into};
 use durer::scene::{
-    AlphaMode, Camera, TextureFilter, Image, Instance, Material, Mesh, MipFilter, Part, Projection,
-    Sampler, Scene, ShadingModel, Texture, TextureRef, Wrap,
+    AlphaMode, Camera, Image, Instance, Material, Mesh, MipFilter, Part, Projection, Sampler,
+    Scene, ShadingModel, Texture, TextureFilter, TextureRef, Wrap,
 };
 use durer::target::Framebuffer;
 

@@ -11,7 +11,9 @@ use durer::target::Framebuffer;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::surface::ray::PrimaryRays;
-use durer::visibility::surface::{self, Cull, TriangleFilter, SurfaceInput, SurfaceMethod, render_with};
+use durer::visibility::surface::{
+    self, Cull, SurfaceInput, SurfaceMethod, TriangleFilter, render_with,
+};
 use std::path::Path;
 
 const SIDE: u32 = 1024;
