@@ -475,7 +475,7 @@ pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
     }
 }
 
-/// Returns the strokes of a [`Mark::Text`], in the sheet's millimetres: letters of the
+/// Returns the strokes of a [`PaperMark::Text`], in the sheet's millimetres: letters of the
 /// [single-stroke font](stroke_font).
 pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: TextAnchor) -> Vec<Vec<DVec2>> {
     let line = stroke_font::line(text, height);

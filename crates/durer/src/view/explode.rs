@@ -37,7 +37,7 @@ impl std::str::FromStr for ExplodeDirection {
     }
 }
 
-/// Default gap, as a part of the scene's extent, or of the largest distance from the middle for [`Way::Radial`].
+/// Default gap, as a part of the scene's extent, or of the largest distance from the middle for [`ExplodeDirection::Radial`].
 const GAP: f64 = 0.08;
 const RADIAL_GAP: f64 = 0.8;
 
@@ -48,7 +48,7 @@ const MOST: usize = 4000;
 const BESIDE: f64 = 1e-6;
 
 /// Moves the instances of a scene apart. `gap` is the free space between neighbours along the axis, in the world's
-/// units, or for [`Way::Radial`] how far the outermost part is moved; `None` takes a part of the scene's extent.
+/// units, or for [`ExplodeDirection::Radial`] how far the outermost part is moved; `None` takes a part of the scene's extent.
 ///
 /// Along an axis the scene gets lines from each part to the one that it was moved away from, in an additional last
 /// instance.

@@ -16,8 +16,8 @@ pub enum Step<P> {
     Border {
         /// Its index in the window; of a rectangle or box 2·axis, plus 1 for the larger coordinate.
         border: usize,
-        /// Relation of the segment to it; [`Relation::Entering`] raises the lower bound of the
-        /// parameter, [`Relation::Leaving`] lowers the upper.
+        /// Relation of the segment to it; [`HalfSpaceRelation::Entering`] raises the lower bound of the
+        /// parameter, [`HalfSpaceRelation::Leaving`] lowers the upper.
         relation: HalfSpaceRelation,
         /// Numbers computed for the border.
         numbers: Numbers,

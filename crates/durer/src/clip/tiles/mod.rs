@@ -3,7 +3,7 @@
 //!
 //! [`walk()`] descends from the world to the tiles of one level and clips their contents on the way; [`Tiling`] clips
 //! geometries as they are; [`Pyramid`] prepares features for vector tiles: simplified, on a grid of whole numbers, for
-//! many levels. [`Detail`] is the level at which their detail is visible.
+//! many levels. [`DetailLevel`] is the level at which their detail is visible.
 
 mod apart;
 mod detail;

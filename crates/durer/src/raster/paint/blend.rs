@@ -19,7 +19,7 @@ pub enum BlendFunction {
     Multiply,
     /// Cb + Cs − Cb·Cs.
     Screen,
-    /// [`Blend::HardLight`] with layer and backdrop exchanged.
+    /// [`BlendFunction::HardLight`] with layer and backdrop exchanged.
     Overlay,
     /// The darker of both.
     Darken,

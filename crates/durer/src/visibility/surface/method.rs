@@ -51,7 +51,7 @@ impl SurfaceMethod {
     }
 
     /// Returns the largest distance from pixels' centres at which the method samples, in 1/256
-    /// pixel: [`Filter::sample_reach`].
+    /// pixel: [`TriangleFilter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
         match self {
             Self::ScanLineZ | Self::SpanningScanLine | Self::DepthSort => 0,

@@ -45,7 +45,7 @@ pub struct Options {
 pub struct CoverageCut {
     /// Valid polygons, in the order of [`overlay::Output`].
     pub shapes: Shapes,
-    /// Source of each point in the subject. Points of the mask are [`Source::Corner`] if they do not lie on
+    /// Source of each point in the subject. Points of the mask are [`VertexSource::Corner`] if they do not lie on
     /// the subject's border.
     pub sources: Vec<VertexSource>,
     /// Number of points that stay on the grid, because rings would cross at the exact places.

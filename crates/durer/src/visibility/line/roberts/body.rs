@@ -72,7 +72,7 @@ impl ConvexBody {
     /// Divides faces into bodies: those that have corners in common belong together.
     ///
     /// # Errors
-    /// Those of [`Body::new`].
+    /// Those of [`ConvexBody::new`].
     pub fn several(faces: &[Vec<DVec3>]) -> Result<Vec<Self>> {
         let (corners, rings) = numbered(faces)?;
         if rings.iter().any(Vec::is_empty) {

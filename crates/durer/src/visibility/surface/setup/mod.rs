@@ -152,7 +152,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// Passes the screen triangles of primitives `range` of a run to `sink`, in order. Lines become strips and points
-    /// squares, of the size of [`Filter::marks`].
+    /// squares, of the size of [`TriangleFilter::marks`].
     pub fn primitives(&mut self, run: &Run, range: Range<u32>, sink: &mut impl Sink) {
         let mesh = &self.scene.meshes[run.mesh];
         let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
