@@ -22,7 +22,7 @@ pub fn aliased() {
             ((x as i32, y as i32), ((x + dx) as i32, (y + dy) as i32), r.color())
         })
         .collect();
-    let tiled: Vec<Line<[u8; 4]>> = lines
+    let tiled: Vec<PixelLine<[u8; 4]>> = lines
         .iter()
         .map(|(p, q, value)| PixelLine { from: (*p).into(), to: (*q).into(), value: *value })
         .collect();
