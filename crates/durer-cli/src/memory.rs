@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_and_those_above_them_are_asked() {
+    fn groups_and_those_above_them_are_read() {
         let v2 =
             "/sys/fs/cgroup/a/b/memory.max /sys/fs/cgroup/a/memory.max /sys/fs/cgroup/memory.max";
         assert_eq!(group_files("0::/a/b\n"), v2.split(' ').collect::<Vec<_>>());

@@ -38,7 +38,7 @@ const MOST_DIGITS: usize = 15;
 impl Job<'_> {
     /// Returns everything that the layers paint.
     pub(super) fn map<T: Surface>(&mut self, given: &[Given<'_>]) -> Result<T, Failure> {
-        self.tell_idle();
+        self.warn_of_idle();
         let start = Instant::now();
         let mut layers = Vec::new();
         for layer in given {
@@ -100,7 +100,7 @@ impl Job<'_> {
     }
 
     /// Warns of options that have no effect on any of the layers that they are given for.
-    fn tell_idle(&self) {
+    fn warn_of_idle(&self) {
         let layers = &self.args.layers.0;
         let idle = |option: &&&str, has_none: &dyn Fn(&Layer) -> bool| {
             let mut with =

@@ -391,7 +391,7 @@ fn stubs_are_cut_back_on_paper_and_kept_for_programs() {
 }
 
 #[test]
-fn areas_are_disjoint_or_trapped_as_asked() {
+fn areas_are_disjoint_or_trapped_as_requested() {
     let folder = Folder::with_models();
     let area = |options: &str| -> f64 {
         folder.must(&format!("render cube.obj -o a.geojson --style regions {options}"));

@@ -21,7 +21,7 @@ fn a_cube_is_in_the_middle_and_not_at_the_border() {
 }
 
 #[test]
-fn backgrounds_are_what_was_asked_for() {
+fn backgrounds_are_those_requested() {
     let folder = Folder::with_models();
     let corner = |background: &str| {
         let picture = render(&folder, &format!("--size 32x32 --background {background}"));

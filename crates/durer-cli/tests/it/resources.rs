@@ -153,7 +153,7 @@ fn what_a_model_from_standard_input_refers_to_is_below_the_root() {
 // Only on systems with case-sensitive names.
 #[cfg(target_os = "linux")]
 #[test]
-fn names_in_another_case_are_found_and_told() {
+fn names_in_another_case_are_found_and_reported() {
     let folder = folder();
     fs::create_dir_all(folder.path("model/Tex/Sub")).unwrap();
     for name in ["Tex/Sub/B.Bin", "Tex/Sub/b.bIN", "exact.BIN", "exact.bin"] {

@@ -24,7 +24,7 @@ fn the_entry_makes_small_pictures() {
 }
 
 #[test]
-fn types_that_desktops_do_not_know_can_be_told_them() {
+fn types_that_desktops_do_not_know_can_be_installed() {
     let folder = Folder::new();
     let text = String::from_utf8(folder.must("thumbnailer --types").out).unwrap();
     assert!(text.contains(r#"<glob pattern="*.ply"/>"#) && text.starts_with("<?xml"), "{text}");

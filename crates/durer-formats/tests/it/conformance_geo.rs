@@ -4,7 +4,7 @@ use crate::shared::data;
 use durer_formats::geo::{GeoFormat, Reader, Writer, read_all};
 
 #[test]
-fn malformed_geojson_is_refused_or_repaired_and_told() {
+fn malformed_geojson_is_refused_or_repaired_and_reported() {
     let Some(data) = data() else { return };
     for (name, expected) in [
         ("geo_nan", "error: line 1, column 42: a number is expected"),

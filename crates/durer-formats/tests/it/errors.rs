@@ -17,7 +17,7 @@ fn errors_go_where_any_error_goes() {
 }
 
 #[test]
-fn errors_of_the_system_can_be_told_by_their_kind() {
+fn errors_of_the_system_have_their_kind() {
     let error = Boxed::from(Error::from(io::Error::from(io::ErrorKind::StorageFull)));
     let Some(Error::Io(inner)) = error.downcast_ref() else { panic!("{error}") };
     assert_eq!(inner.kind(), io::ErrorKind::StorageFull);

@@ -151,8 +151,8 @@ POLYGON ((11 20.5, 11 20, 10 20, 12 20.5, 11 20.5))\nPOINT (11 21)\n"
         ),
         ("\"scale\":", "\"skale\":", "needs scale and translate"),
     ] {
-        let told_now = error(TOPOLOGY.replacen(from, to, 1).as_bytes(), "");
-        assert!(told_now.contains(messages), "{told_now}");
+        let refusal = error(TOPOLOGY.replacen(from, to, 1).as_bytes(), "");
+        assert!(refusal.contains(messages), "{refusal}");
     }
 }
 

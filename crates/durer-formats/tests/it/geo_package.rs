@@ -70,7 +70,7 @@ fn a_layer_has_numbers_fields_and_its_system() {
 }
 
 #[test]
-fn geometries_of_all_kinds_are_read_and_bad_ones_told() {
+fn geometries_of_all_kinds_are_read_and_bad_ones_reported() {
     let (features, warnings, system) = layer(PLAIN, Some("lines"));
     assert_eq!(system.code, Some(32632));
     let wkt = text(&features, GeoFormat::Wkt);

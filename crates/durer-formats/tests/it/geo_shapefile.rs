@@ -123,7 +123,7 @@ fn table(driver: u8, text: &[u8; 6]) -> Vec<u8> {
 }
 
 #[test]
-fn texts_are_decoded_as_told() {
+fn texts_are_decoded_as_stated() {
     let (mut files, _) = written(&parsed("POINT (1 2)"), System::default()).expect("written");
     for (cpg, driver, text, decoded) in [
         (Some("UTF-8"), 0, b"\xc3\xa4    ", "ä"),

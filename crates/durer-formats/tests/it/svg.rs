@@ -206,7 +206,7 @@ fn values_that_cannot_be_used_are_reported_with_their_place() {
 }
 
 #[test]
-fn values_that_mean_something_are_not_told() {
+fn values_that_mean_something_are_not_reported() {
     let body = "<g fill='NONE' stroke=' red ' stroke-width=' 2PX ' color='#123' transform=''/>
         <g fill='currentcolor' stroke='inherit' opacity='50%' stroke-dasharray='none' d='x'/>
         <rect x='1%' y='2em' width='auto' height='3mm' rx='auto'/><path d=''/><path d='none'/>

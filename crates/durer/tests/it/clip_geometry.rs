@@ -165,7 +165,7 @@ fn buffers_reach_a_distance_around_all_parts() {
 }
 
 #[test]
-fn edges_go_the_long_way_unless_asked_otherwise() {
+fn edges_go_the_long_way_unless_requested_otherwise() {
     let across = line(&[(170.0, 0.0), (-170.0, 0.0)]);
     let xs = |short| -> Vec<f64> {
         let placed = place(&across, Coordinates::LonLat, short);

@@ -67,7 +67,7 @@ fn marks_are_dark_on_light_and_light_on_dark() {
 }
 
 #[test]
-fn marks_are_as_large_as_asked_for() {
+fn marks_are_as_large_as_requested() {
     let lines = scene(vec![marks(Topology::Lines, &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])]);
     let points = scene(vec![marks(Topology::Points, &[[0.0, 0.0, 0.0]])]);
     let inked = |scene: &Scene, size: f64| {

@@ -63,7 +63,7 @@ fn half_of_the_light_gets_into_a_corner_and_all_onto_a_wall() {
 }
 
 #[test]
-fn occlusion_darkens_and_leaves_no_planes_that_are_not_asked_for() {
+fn occlusion_darkens_and_leaves_no_planes_that_are_not_requested() {
     let plain = options(parallel(DVec3::new(10.0, 1.0, 10.0), 8.0), 100);
     let occlusion = ambient_occlusion::Options { radius: 1.0, strength: 1.0 };
     let dark = RenderOptions { ambient_occlusion: Some(occlusion), ..plain.clone() };

@@ -39,14 +39,14 @@ pub struct Given {
 impl Given {
     /// Returns what the members of a feature set or of a geometry state, or else what is given already.
     pub fn of(self, members: &[RawMember<'_>]) -> Self {
-        let messages = |name: &[u8]| match find(members, name)?.as_bytes() {
+        let stated = |name: &[u8]| match find(members, name)?.as_bytes() {
             b"true" => Some(true),
             b"false" => Some(false),
             _ => None,
         };
         Self {
-            has_z: messages(b"\"hasZ\"").or(self.has_z),
-            has_m: messages(b"\"hasM\"").or(self.has_m),
+            has_z: stated(b"\"hasZ\"").or(self.has_z),
+            has_m: stated(b"\"hasM\"").or(self.has_m),
         }
     }
 
@@ -112,7 +112,7 @@ pub fn error_of_server(members: &[RawMember<'_>]) -> Option<String> {
 }
 
 /// Warns of features that the server did not send.
-pub fn tell_limit(value: &[u8], place: Place, warnings: &mut Warnings) {
+pub fn warn_of_limit(value: &[u8], place: Place, warnings: &mut Warnings) {
     if value == b"true" {
         let message = "the server has more features than it sent (exceededTransferLimit); query the rest with resultOffset";
         warnings.push(place, message);

@@ -295,7 +295,7 @@ impl<R: Read> Reader<R> {
         for (name, value) in open.iter().filter(|_| is_set || self.esri.is_some()) {
             if name.bytes == b"\"exceededTransferLimit\"" {
                 let place = value.text().place();
-                esri::tell_limit(&value.bytes, place, &mut self.geometries.warnings);
+                esri::warn_of_limit(&value.bytes, place, &mut self.geometries.warnings);
             }
             // A system that is stated behind the features.
             let late = name.bytes == esri::SYSTEM && self.systems.collection.is_none();

@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn days_are_counted_and_told() {
+    fn days_are_counted_and_shown() {
         for (text, days) in [
             ("1970-01-01", 0),
             ("2024-02-29", 19_782),
