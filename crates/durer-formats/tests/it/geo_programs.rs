@@ -156,7 +156,7 @@ fn other_formats_of_json_are_named() {
     for (text, name) in [
         (
             r#"{"error":{"code":400,"message":"Invalid URL"}}"#,
-            "this is no map but the error of a server: Invalid URL",
+            "this is not a map but an error from a server: Invalid URL",
         ),
         (
             r#"{"version":0.6,"generator":"Overpass API","elements":[]}"#,

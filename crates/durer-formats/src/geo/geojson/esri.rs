@@ -108,7 +108,7 @@ pub fn error_of_server(members: &[RawMember<'_>]) -> Option<String> {
         serde_json::from_slice(find(members, b"\"error\"")?.as_bytes()).ok()?;
     let message = error["message"].as_str()?;
     let shown = crate::text::quote(message.as_bytes());
-    Some(format!("this is no map but the error of a server: {shown}"))
+    Some(format!("this is not a map but an error from a server: {shown}"))
 }
 
 /// Warns of features that the server did not send.

@@ -21,7 +21,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "bentley-ottmann",
     title: "Bentley–Ottmann",

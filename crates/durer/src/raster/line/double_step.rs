@@ -13,7 +13,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::{PseudocodeLine, Tracer};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "double-step",
     title: "Double-step line",

@@ -14,7 +14,7 @@ use crate::info::{Class, Coherence, Info, Occluder};
 use crate::math::IVec2;
 use crate::trace::{PseudocodeLine, Tracer};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "run-slice",
     title: "Run-slice line",

@@ -23,7 +23,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "appel",
     title: "Appel's quantitative invisibility, carried along edges",

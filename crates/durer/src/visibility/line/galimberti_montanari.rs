@@ -20,7 +20,7 @@ use crate::sorting::CompactSort;
 use crate::trace::{PseudocodeLine, Tracer};
 use crate::work::{Charge, Work};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "galimberti-montanari",
     title: "Galimberti and Montanari's hidden lines",

@@ -21,7 +21,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::depth_sort::PaintTest;
 use crate::work::Charge;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "depth-sort-polygons",
     title: "Newell–Newell–Sancha depth sort of polygons",

@@ -21,7 +21,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 use crate::{Error, Result};
 use std::ops::Range;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "patch-subdivision",
     title: "Catmull's subdivision of patches",

@@ -27,7 +27,7 @@ use crate::trace::{NoTrace, PseudocodeLine, Tracer};
 use crate::visibility::back_face::Eye;
 use std::collections::BTreeMap;
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "shadow-volumes",
     title: "Shadow volumes",

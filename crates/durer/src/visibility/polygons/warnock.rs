@@ -20,7 +20,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 use crate::visibility::surface::warnock::Division;
 use crate::visibility::surface::window::{SampleRect, WindowRelation};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "warnock-polygons",
     title: "Warnock's area subdivision of polygons",

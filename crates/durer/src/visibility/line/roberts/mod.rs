@@ -30,7 +30,7 @@ use body::FLATNESS;
 pub(super) use body::numbered;
 use program::{EyePoint, Program};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "roberts",
     title: "Roberts' algorithm",

@@ -24,7 +24,7 @@ use crate::trace::{PseudocodeLine, Tracer};
 use std::collections::BTreeMap;
 use tree::{Cell, Division, Holding, Octree};
 
-/// The facts.
+/// Facts about the algorithm.
 pub const INFO: Info = Info {
     name: "octree",
     title: "Octree from front to back",
